@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nsma/program/answer.hpp"
+
+namespace nsma {
+
+/// One pattern as the scan sees it.
+struct PatternRecord {
+    Pattern pattern;
+    int gap_sign = 1;
+    int kernel_dimension = 0;
+    Verdict verdict = Verdict::failed;  ///< trivial, inadmissible, admissible or failed
+    EnergyInterval interval;
+    std::string reason;                 ///< what decided: e.g. "no live class with x_0 > 0"
+    double seconds = 0;
+};
+
+/// Counts and times of a whole sweep.
+struct SweepSummary {
+    int patterns = 0;      ///< visited
+    int trivial = 0;
+    int inadmissible = 0;
+    int admissible = 0;
+    int failed_patterns = 0;
+    int levels = 0;        ///< pattern-level pairs asked, closed-form least-energy orbits aside
+    int solved = 0;        ///< admissible answers among them
+    int closed_form = 0;   ///< solved without a solver
+    int below = 0;
+    int above = 0;
+    int agreed = 0;
+    int disagreed = 0;     ///< usable answers of both solvers at different optima
+    int one_failed = 0;    ///< one of the two solvers failed; the other's answer was kept
+    int failed = 0;        ///< verdict `failed`, or both solvers failed
+    double worst_violation = 0;  ///< worst replayed relative violation of the kept orbits
+    double seconds = 0;
+    bool interrupted = false;
+};
+
+/// Receives the records of a study as they come.
+class SweepSink {
+public:
+    virtual ~SweepSink() = default;
+    virtual void pattern(const PatternRecord& record) = 0;
+    /// The least-energy orbit of an admissible pattern (level absent), then one answer a level.
+    virtual void answer(const OrbitAnswer& answer) = 0;
+    /// Work done so far out of all; total may shrink or grow while a sweep runs.
+    virtual void progress(long done, long total) = 0;
+};
+
+}  // namespace nsma

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "nsma/orbit/pattern.hpp"
+#include "nsma/program/objective_name.hpp"
+#include "nsma/wave/bar.hpp"
+#include "nsma/wave/mesh.hpp"
+
+namespace nsma {
+
+/// Patterns of one nonsmooth mode (closed form).
+struct ModeSelection {
+    int mode = 1;  ///< k >= 1
+};
+/// Patterns by period and, if given, contact duration, both in units of tau, bounds included.
+struct PeriodSelection {
+    std::array<double, 2> period{0.0, 4.0};
+    std::optional<std::array<double, 2>> contact;
+};
+/// Patterns named one by one as (r, p).
+struct ListSelection {
+    std::vector<std::pair<int, int>> steps;
+};
+using PatternSelection = std::variant<ModeSelection, PeriodSelection, ListSelection>;
+
+/// What to compute: the plain data of a scene file, already checked.
+struct Scene {
+    std::string title;
+    Bar bar;
+    Mesh mesh;
+    PatternSelection patterns;
+    std::vector<double> levels;  ///< energy ratios E/E_g, joules for a closed gap; all > 0
+    Objective objective = Objective::least_shock;
+    std::string text;  ///< the scene file as read; empty for a scene made in code
+};
+
+/// The patterns of a scene on its mesh, those of trivial kernel included, ordered by n_T then r
+/// (a list keeps its order).
+[[nodiscard]] std::vector<Pattern> patterns_of(const Scene& scene);
+
+}  // namespace nsma
