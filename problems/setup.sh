@@ -1,0 +1,54 @@
+# Sourced by run.sh here and by tests/run.sh, with `top` the top folder of the checkout: what a bare Debian 12 machine
+# needs to build and run nsma. Nothing is done when nothing is missing.
+
+# Compiler and build tools; libraries, each for its own field; tests; charts and a font to write on them.
+packages="
+g++ cmake ninja-build pkg-config
+libeigen3-dev coinor-libipopt-dev libnlopt-dev libnlopt-cxx-dev coinor-libclp-dev coinor-libcoinutils-dev
+libboost-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+libgtest-dev libgmock-dev
+gnuplot-nox fonts-dejavu-core
+"
+
+say() {
+    printf '== %s\n' "$*"
+}
+
+# Any gnuplot will do: the flavours exclude each other, so one that is there is left alone.
+is_installed() {
+    if [ "$1" = gnuplot-nox ] && command -v gnuplot >/dev/null; then
+        return 0
+    fi
+    dpkg-query -W -f '${db:Status-Status}\n' "$1" 2>/dev/null | grep -q '^installed$'
+}
+
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        printf '%s\n' "neither root nor sudo: as root, run: $*" >&2
+        exit 2
+    fi
+}
+
+install_packages() {
+    if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+        say "not a Debian machine, nothing installed; needed are the equivalents of:" $packages
+        return 0
+    fi
+    missing=""
+    for package in $packages; do
+        is_installed "$package" || missing="$missing $package"
+    done
+    if [ -z "$missing" ]; then
+        say "all packages are there"
+        return 0
+    fi
+    say "installing$missing"
+    as_root apt-get -qq -o DPkg::Lock::Timeout=300 update
+    # shellcheck disable=SC2086  # one word a package
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 \
+        install -y --no-install-recommends $missing
+}

@@ -1,0 +1,32 @@
+#!/bin/sh
+set -eu
+
+usage() {
+    cat <<'END'
+usage: sh tests/run.sh [release|debug|clang ...]
+
+Installs the packages that are missing (sudo only if not root), then configures, builds and tests each preset named;
+without a name release, then debug (address and undefined-behaviour sanitizers). It may be run again at any time.
+END
+}
+
+for preset in "$@"; do
+    case "$preset" in
+        release | debug | clang) ;;
+        -h | --help) usage; exit 0 ;;
+        *) usage >&2; exit 2 ;;
+    esac
+done
+[ $# -gt 0 ] || set -- release debug
+
+top=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
+cd "$top"
+. problems/setup.sh
+
+install_packages
+
+for preset in "$@"; do
+    say "building and testing the preset $preset"
+    cmake --workflow --preset "$preset"
+done
+say "all tests passed: $*"
