@@ -1,0 +1,94 @@
+#include "nsma/orbit/conditions.hpp"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace nsma {
+
+namespace {
+
+std::size_t index(int n) { return static_cast<std::size_t>(n); }
+
+}  // namespace
+
+double Conditions::energy_factor() const {
+    const double cells = kernel.pattern.cells;
+    return 4.0 * cells * cells / kernel.classes;
+}
+
+Conditions conditions(const Kernel& kernel, int gap_sign) {
+    if (gap_sign < -1 || gap_sign > 1) {
+        throw std::invalid_argument(fmt::format("gap_sign: expected -1, 0 or 1, got {}", gap_sign));
+    }
+    using Sign = Conditions::Sign;
+    Conditions result;
+    result.kernel = kernel;
+    result.gap_sign = gap_sign;
+    result.bound_of.assign(index(kernel.dimension()), Sign::free);
+    for (int n = kernel.pattern.free_steps; n < kernel.pattern.period_steps(); ++n) {
+        const int column = kernel.column(n);
+        if (column < 0) {
+            continue;
+        }
+        const Sign wanted = kernel.sign[index(n)] > 0 ? Sign::nonnegative : Sign::nonpositive;
+        Sign& bound = result.bound_of[index(column)];
+        if (bound == Sign::free) {
+            bound = wanted;
+        } else if (bound != wanted) {
+            bound = Sign::zero;
+        }
+    }
+    return result;
+}
+
+Eigen::VectorXi contact_row(const Kernel& kernel) {
+    const int period = kernel.pattern.period_steps();
+    const int window = 2 * kernel.pattern.cells;
+    const int rounds = window / period;     // whole periods in the queue
+    const int remainder = window % period;  // steps seen once more
+    Eigen::VectorXi row = Eigen::VectorXi::Zero(kernel.dimension());
+    const int last = rounds > 0 ? period : remainder;
+    for (int n = 0; n < last; ++n) {
+        const int column = kernel.column(n);
+        if (column >= 0) {
+            row[column] -= kernel.sign[index(n)] * (rounds + (n < remainder ? 1 : 0));
+        }
+    }
+    return row;
+}
+
+Eigen::MatrixXi tip_rows(const Kernel& kernel) {
+    const int period = kernel.pattern.period_steps();
+    Eigen::MatrixXi rows(period + 1, kernel.dimension());
+    rows.row(0) = contact_row(kernel).transpose();
+    for (int n = 0; n < period; ++n) {
+        rows.row(n + 1) = rows.row(n);
+        const int column = kernel.column(n);
+        if (n < kernel.pattern.free_steps && column >= 0) {
+            rows(n + 1, column) += 2 * kernel.sign[index(n)];
+        }
+    }
+    return rows;
+}
+
+Eigen::VectorXd tip_history(const Kernel& kernel, const Eigen::VectorXd& beta) {
+    if (beta.size() != kernel.dimension()) {
+        throw std::invalid_argument(
+            fmt::format("beta: expected size {}, got {}", kernel.dimension(), beta.size()));
+    }
+    const int period = kernel.pattern.period_steps();
+    const int free_steps = kernel.pattern.free_steps;
+    const double contact = contact_row(kernel).cast<double>().dot(beta);
+    Eigen::VectorXd history(period + 1);
+    history[0] = contact;
+    for (int n = 0; n + 1 < free_steps; ++n) {
+        const int column = kernel.column(n);
+        history[n + 1] =
+            history[n] + (column >= 0 ? 2.0 * kernel.sign[index(n)] * beta[column] : 0.0);
+    }
+    history.tail(period + 1 - free_steps).setConstant(contact);  // n = r..n_T
+    return history;
+}
+
+}  // namespace nsma

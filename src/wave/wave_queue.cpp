@@ -1,0 +1,89 @@
+#include "nsma/wave/wave_queue.hpp"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace nsma {
+
+namespace {
+
+/// Compensated (Kahan) sum: the tip of a long queue keeps full precision.
+double sum(const std::vector<double>& values) {
+    double total = 0.0;
+    double lost = 0.0;
+    for (const double value : values) {
+        const double term = value - lost;
+        const double next = total + term;
+        lost = (next - total) - term;
+        total = next;
+    }
+    return total;
+}
+
+}  // namespace
+
+WaveQueue::WaveQueue(const Bar& bar, const Mesh& mesh, const State& state)
+    : bar_(bar),
+      mesh_(mesh),
+      step_per_wave_(2.0 * mesh.time_step(bar)),
+      force_per_wave_(-2.0 * bar.impedance() * bar.area) {
+    validate(bar);
+    validate(mesh, state);
+    const int cells = mesh.cells;
+    const double z = bar.impedance();
+    waves_.resize(static_cast<std::size_t>(mesh.window()));
+    for (int i = 1; i <= cells; ++i) {
+        const double stress = state[i - 1] / z;
+        const double velocity = state[cells + i - 1];
+        waves_[static_cast<std::size_t>(cells - i)] = 0.5 * (velocity - stress);
+        waves_[static_cast<std::size_t>(cells + i - 1)] = -0.5 * (velocity + stress);
+    }
+    tip_ = -0.5 * step_per_wave_ * sum(waves_);
+}
+
+void WaveQueue::step_free() {
+    tip_ += step_per_wave_ * waves_[head_];
+    waves_[head_] = -waves_[head_];
+    advance();
+}
+
+void WaveQueue::step_contact() { advance(); }
+
+void WaveQueue::advance() {
+    if (++head_ == waves_.size()) {
+        head_ = 0;
+        tip_ = -0.5 * step_per_wave_ * sum(waves_);
+    }
+}
+
+State WaveQueue::state() const {
+    const int cells = mesh_.cells;
+    const double z = bar_.impedance();
+    State state(mesh_.window());
+    for (int i = 1; i <= cells; ++i) {
+        const double toward = wave(cells - i);    // travels to the contact end
+        const double away = wave(cells + i - 1);  // returns from the fixed end
+        state[i - 1] = -z * (toward + away);
+        state[cells + i - 1] = toward - away;
+    }
+    return state;
+}
+
+double WaveQueue::energy() const {
+    double squares = 0.0;
+    for (const double wave : waves_) {
+        squares += wave * wave;
+    }
+    return bar_.density * bar_.area * mesh_.cell_length(bar_) * squares;
+}
+
+double WaveQueue::wave(int k) const {
+    if (k < 0 || k >= window()) {
+        throw std::invalid_argument(fmt::format("wave: expected 0 <= k < {}, got {}", window(), k));
+    }
+    const std::size_t position = head_ + static_cast<std::size_t>(k);
+    return waves_[position < waves_.size() ? position : position - waves_.size()];
+}
+
+}  // namespace nsma
