@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nsma/study/records.hpp"
+
+namespace nsma {
+
+/// Lines of the CSV and text tables, without their line end. Numbers are the shortest decimals
+/// that read back to the same double; a field is empty where there is no value. Units and
+/// columns: data/README.md.
+
+/// Columns of `nsma scan --csv`, and the row of one pattern. Energy ratios are E/E_g, empty for
+/// a closed gap; energy_ratio_max is empty when unbounded or unknown.
+[[nodiscard]] std::string scan_csv_header();
+[[nodiscard]] std::string scan_csv_row(const Bar& bar, const PatternRecord& record);
+
+/// The same for the terminal: aligned columns, "inf" for unbounded, "-" for no value; energies
+/// of a closed gap in joules. Ends with a line end.
+[[nodiscard]] std::string scan_table(const Bar& bar, const std::vector<PatternRecord>& records);
+
+/// Columns of a sweep's patterns.csv: those of the scan, then energy_min_joule,
+/// energy_max_joule, energy_unbounded and reason.
+[[nodiscard]] std::string patterns_csv_header();
+[[nodiscard]] std::string patterns_csv_row(const Bar& bar, const PatternRecord& record);
+
+/// Columns of a sweep's levels.csv, one row an answer; no times, so that runs can be compared.
+[[nodiscard]] std::string levels_csv_header();
+[[nodiscard]] std::string levels_csv_row(const Bar& bar, const OrbitAnswer& answer);
+
+/// Columns of a sweep's timings.csv: seconds of every pattern, answer and solver run.
+[[nodiscard]] std::string timings_csv_header();
+[[nodiscard]] std::vector<std::string> timings_csv_rows(const PatternRecord& record);
+[[nodiscard]] std::vector<std::string> timings_csv_rows(const OrbitAnswer& answer);
+
+/// The counts of a sweep as an aligned table; ends with a line end.
+[[nodiscard]] std::string summary_table(const SweepSummary& summary);
+
+/// The best run of the solver whose name begins with `solver` ("ipopt" or "nlopt"), or null.
+[[nodiscard]] const SolverRun* best_run(const OrbitAnswer& answer, std::string_view solver);
+
+}  // namespace nsma
