@@ -12,7 +12,9 @@ struct Violations {
     double periodicity = 0.0;  ///< ||Q_nT - Q_0|| / ||Q_0||, energy norm
     double cond1 = 0.0;        ///< max (x_n - d)+ over the free flight / displacement scale
     double cond2 = 0.0;        ///< max |x_n - d| over the contact phase / displacement scale
-    double cond3 = 0.0;        ///< max (lambda_n)+ / largest |lambda| (1 if the orbit has no force)
+    /// max (lambda_n)+ / largest |lambda|; where the orbit has no force (below 1e-12 of what its
+    /// largest wave could exert) / 2 z S max|b|, so that noise is not divided by noise.
+    double cond3 = 0.0;
     double energy = 0.0;       ///< |E/E_unit - level| / level; 0 when no level is asked
 
     [[nodiscard]] double worst() const;
@@ -31,7 +33,8 @@ inline constexpr double replay_tolerance = 1e-9;
 
 /// Replays Q0 twice: with the labelled schedule (r free, p contact steps), which measures each
 /// condition, and with the marcher, which decides contact by itself. Displacement scale: |d|, or
-/// for a closed gap the largest |x_n|.
+/// for a closed gap the largest |x_n|. Throws std::invalid_argument unless level > 0, periods >= 1
+/// and tolerance >= 0.
 [[nodiscard]] Replay replay(const Orbit& orbit, std::optional<double> level = std::nullopt,
                             int periods = 1, double tolerance = replay_tolerance);
 

@@ -30,7 +30,8 @@ struct MarchReport {
     std::vector<MarchedStep> first_period;  ///< period_steps entries
     int free_steps = 0;                     ///< seen in the first period
     int contact_steps = 0;                  ///< seen in the first period
-    int contact_phases = 0;                 ///< times contact began in the first period, cyclically
+    /// Times contact began in the first period, cyclically; 0 if it never ceases.
+    int contact_phases = 0;
     double worst_penetration = 0.0;  ///< max of x - d over all steps, >= 0 [m]
     double worst_separation = 0.0;   ///< max of |x - d| over contact steps [m]
     double worst_tension = 0.0;      ///< max of lambda over contact steps, >= 0 [N]
