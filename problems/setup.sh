@@ -22,20 +22,9 @@ is_installed() {
     dpkg-query -W -f '${db:Status-Status}\n' "$1" 2>/dev/null | grep -q '^installed$'
 }
 
-as_root() {
-    if [ "$(id -u)" -eq 0 ]; then
-        "$@"
-    elif command -v sudo >/dev/null; then
-        sudo "$@"
-    else
-        printf '%s\n' "neither root nor sudo: as root, run: $*" >&2
-        exit 2
-    fi
-}
-
 install_packages() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
-        say "not a Debian machine, nothing installed; needed are the equivalents of:" $packages
+        say "not a Debian machine, nothing installed; needed are the equivalents of:$packages"
         return 0
     fi
     missing=""
@@ -46,9 +35,17 @@ install_packages() {
         say "all packages are there"
         return 0
     fi
+    if [ "$(id -u)" -eq 0 ]; then
+        sudo=""
+    elif command -v sudo >/dev/null; then
+        sudo=sudo
+    else
+        say "neither root nor sudo here; as root, run: apt-get install --no-install-recommends$missing" >&2
+        exit 1
+    fi
     say "installing$missing"
-    as_root apt-get -qq -o DPkg::Lock::Timeout=300 update
+    apt="$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300"
+    $apt update
     # shellcheck disable=SC2086  # one word a package
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 \
-        install -y --no-install-recommends $missing
+    $apt install -y --no-install-recommends $missing
 }
