@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "nsma/program/admissible_set.hpp"
+
+namespace nsma {
+
+/// Points of an admissible set at one energy level, without a solver: between two admissible
+/// points the energy is a quadratic, so a segment from below the level to above it crosses it
+/// exactly, and convexity keeps the crossing admissible.
+class LevelPoints {
+public:
+    /// The set must be nonempty, with its vertices, and outlive this object; level > 0.
+    LevelPoints(const AdmissibleSet& set, double level);
+
+    /// Start number k >= 0, feasible on the level: 0 toward the greatest energy known, 1 toward
+    /// another vertex, then fixed-seed random mixtures. Absent when the level is not attainable.
+    [[nodiscard]] std::optional<Eigen::VectorXd> start(int k) const;
+
+    /// The admissible point on the level that a segment from `gamma` (admissible) reaches.
+    [[nodiscard]] std::optional<Eigen::VectorXd> reach(const Eigen::VectorXd& gamma) const;
+
+    /// An admissible point away from the rows that can be away from equality.
+    [[nodiscard]] const Eigen::VectorXd& centre() const { return centre_; }
+
+private:
+    [[nodiscard]] Eigen::VectorXd mixture(int seed) const;
+
+    const AdmissibleSet& set_;
+    double level_;
+    Eigen::VectorXd base_;    // the least-energy point; the rest state for a closed gap
+    Eigen::VectorXd centre_;
+};
+
+}  // namespace nsma

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+
+#include "nsma/program/admissible_set.hpp"
+#include "nsma/program/answer.hpp"
+#include "nsma/program/solver.hpp"
+
+namespace nsma {
+
+/// Everything about one pattern that no energy level changes: its kernel and admissible set.
+struct PatternProblem {
+    Kernel kernel;
+    AdmissibleSet set;
+    Verdict verdict = Verdict::failed;  ///< trivial, inadmissible, admissible or failed
+};
+
+/// Decides one pattern for a gap of the given sign. Throws std::invalid_argument on a bad
+/// pattern.
+[[nodiscard]] PatternProblem pattern_problem(const Pattern& pattern, int gap_sign,
+                                             const AdmissibleOptions& options = {});
+
+enum class SolverChoice { ipopt, nlopt, both };
+
+struct OrbitSolverOptions {
+    SolverChoice solvers = SolverChoice::both;
+    int starts = 4;                     ///< starts per solver where the optimum is not proved, >= 1
+    double agreement_tolerance = 1e-6;  ///< relative difference of objectives that still agree
+    double raw_violation = 1e-4;        ///< a raw answer further out is a failure of its solver
+    double level_tolerance = 1e-15;     ///< relative; a level this close to an end is the end
+    SolverOptions solver;
+};
+
+struct OrbitRequest {
+    std::optional<double> level;  ///< E/E_unit, > 0; absent: the least-energy orbit
+    Objective objective = Objective::least_shock;
+    /// `nearest`: window b_0..b_{2N-1} in units u/dt; empty: the least-energy orbit (closed gap:
+    /// the least-shock orbit at the level).
+    Eigen::VectorXd reference;
+};
+
+/// Finds, cross-checks and replays orbits of one bar, reusing its solvers. Closed forms first:
+/// a point, a segment, an end of the energy interval never reach a solver.
+class OrbitSolver {
+public:
+    explicit OrbitSolver(const OrbitSolverOptions& options = {});
+
+    /// Throws std::invalid_argument on a level that is not finite and > 0, a reference of a
+    /// wrong size, or a problem made for another gap sign; any other failure is in the answer.
+    [[nodiscard]] OrbitAnswer solve(const Bar& bar, const PatternProblem& problem,
+                                    const OrbitRequest& request);
+
+private:
+    OrbitSolverOptions options_;
+    IpoptSolver ipopt_;
+};
+
+/// The window b_0..b_{2N-1} of an orbit in units u/dt, as a reference for `nearest`.
+[[nodiscard]] Eigen::VectorXd reference_window(const Orbit& orbit);
+
+}  // namespace nsma

@@ -1,0 +1,455 @@
+#include "nsma/program/orbit_solver.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "nsma/program/level_points.hpp"
+#include "nsma/program/orbit_program.hpp"
+#include "nsma/program/polish.hpp"
+
+namespace nsma {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// Two vertices whose energies differ by rounding only are the same end of the interval.
+constexpr double tie_tolerance = 1e-13;
+// Distance beyond a row, relative to the size of the point, that rounding explains.
+constexpr double row_rounding = 1e-13;
+
+bool is_extreme(Objective objective) {
+    return objective == Objective::min_energy || objective == Objective::max_energy;
+}
+
+// An admissible point and how it was found.
+struct Candidate {
+    Eigen::VectorXd gamma;
+    std::string method;
+};
+
+bool admissible_point(const Reduction& reduction, const Eigen::VectorXd& gamma) {
+    const double tolerance = row_rounding * gamma.lpNorm<1>();
+    for (Eigen::Index j = 0; j < gamma.size(); ++j) {
+        if (reduction.bounded[static_cast<std::size_t>(j)] != 0 && gamma[j] < -tolerance) return false;
+    }
+    return reduction.rows.rows() == 0 ||
+           (reduction.rows.cast<double>() * gamma).maxCoeff() <= tolerance;
+}
+
+// Both points at which a line meets the level, for a flat of dimension one.
+std::vector<Eigen::VectorXd> line_points(const Reduction& reduction, double level) {
+    const Eigen::VectorXd w = reduction.contact_row.cast<double>();
+    const auto n = w.size();
+    Eigen::VectorXd base = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd direction = Eigen::VectorXd::Ones(n);
+    if (w.squaredNorm() > 0) base = reduction.gap_sign * w / w.squaredNorm();
+    if (n == 2) direction = Eigen::Vector2d(-w[1], w[0]).normalized();
+    const double square = level / reduction.energy_factor - base.squaredNorm();
+    std::vector<Eigen::VectorXd> points;
+    if (square < 0) return points;
+    for (const double side : {1.0, -1.0}) {
+        Eigen::VectorXd point = base + side * std::sqrt(square) * direction;
+        if (!admissible_point(reduction, point)) continue;
+        for (Eigen::Index j = 0; j < n; ++j) {
+            if (reduction.bounded[static_cast<std::size_t>(j)] != 0) point[j] = std::max(point[j], 0.0);
+        }
+        points.push_back(std::move(point));
+    }
+    return points;
+}
+
+// Brings the raw answer of a solver to an admissible point on the level, nearby.
+std::optional<Eigen::VectorXd> restored(const OrbitProgram& orbit_program, const AdmissibleSet& set,
+                                        const LevelPoints* level, const Eigen::VectorXd& raw) {
+    const auto& program = orbit_program.program;
+    Eigen::VectorXd x = raw.cwiseMax(program.lower).cwiseMin(program.upper);
+    Eigen::VectorXd gamma = orbit_program.gamma(x);
+    const Eigen::VectorXd w = set.reduction.contact_row.cast<double>();
+    const Eigen::VectorXd centre = level != nullptr ? level->centre() : set.least;
+    // Onto COND2, then toward the centre until no row is crossed.
+    if (w.squaredNorm() > 0) gamma += w * ((set.reduction.gap_sign - w.dot(gamma)) / w.squaredNorm());
+    double blend = 0;
+    const auto need = [&](double excess, double centre_slack) {
+        if (excess <= 0) return;
+        blend = std::max(blend, centre_slack > 0 ? excess / (excess + centre_slack) : 1.0);
+    };
+    const Eigen::MatrixXd rows = set.reduction.rows.cast<double>();
+    const Eigen::VectorXd values = rows * gamma;
+    const Eigen::VectorXd slacks = -(rows * centre);
+    const double rounding = row_rounding * gamma.lpNorm<1>();
+    for (Eigen::Index i = 0; i < values.size(); ++i) need(values[i] - rounding, slacks[i]);
+    for (Eigen::Index j = 0; j < gamma.size(); ++j) {
+        if (set.reduction.bounded[static_cast<std::size_t>(j)] != 0) need(-gamma[j], centre[j]);
+    }
+    if (blend > 0) gamma += std::min(blend, 1.0) * (centre - gamma);
+    if (level == nullptr) return gamma;
+    return level->reach(gamma);
+}
+
+class Solve {
+public:
+    Solve(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Bar& bar,
+          const PatternProblem& problem, const OrbitRequest& request)
+        : options_(options), ipopt_(ipopt), bar_(bar), problem_(problem), request_(request),
+          reduction_(problem.set.reduction) {}
+
+    OrbitAnswer run() {
+        answer_.pattern = problem_.kernel.pattern;
+        answer_.gap_sign = bar_.gap_sign();
+        answer_.kernel_dimension = problem_.kernel.dimension();
+        answer_.verdict = problem_.verdict;
+        answer_.reason = problem_.set.reason;
+        answer_.interval = problem_.set.interval();
+        answer_.level = request_.level;
+        answer_.objective = request_.objective;
+        if (problem_.verdict == Verdict::admissible && level_verdict()) {
+            answer_.reason.clear();
+            find();
+        }
+        return std::move(answer_);
+    }
+
+private:
+    // Sets below/above and returns false where the level is outside the interval.
+    bool level_verdict() {
+        if (!request_.level) {
+            if (reduction_.gap_sign != 0 || is_extreme(request_.objective)) return true;
+            answer_.verdict = Verdict::failed;
+            answer_.reason = "a closed gap has no least-energy orbit: give an energy";
+            return false;
+        }
+        const double level = *request_.level;
+        if (level < *answer_.interval.least * (1 - options_.level_tolerance)) {
+            answer_.verdict = Verdict::below;
+            answer_.reason = "level below the least energy of the pattern";
+            return false;
+        }
+        const auto& greatest = answer_.interval.greatest;
+        if (greatest && level > *greatest * (1 + options_.level_tolerance)) {
+            answer_.verdict = Verdict::above;
+            answer_.reason = "level above the greatest energy attained by the vertices of the pattern";
+            return false;
+        }
+        return true;
+    }
+
+    void find() {
+        if (request_.objective == Objective::nearest && !set_reference()) return;
+        if (closed_form()) return;
+        optimise();
+    }
+
+    bool set_reference() {
+        reference_ = request_.reference;
+        if (reference_.size() > 0) return true;
+        if (reduction_.gap_sign != 0) {
+            const Orbit least = make_orbit(bar_, problem_.kernel, reduction_.beta(problem_.set.least));
+            reference_ = reference_window(least);
+            return true;
+        }
+        OrbitRequest first = request_;
+        first.objective = Objective::least_shock;
+        const OrbitAnswer smooth = Solve(options_, ipopt_, bar_, problem_, first).run();
+        if (!smooth.orbit) {
+            answer_.verdict = Verdict::failed;
+            answer_.reason = "no reference orbit: " + smooth.reason;
+            return false;
+        }
+        reference_ = reference_window(*smooth.orbit);
+        return true;
+    }
+
+    // Orbits known without a solver: ends of the interval, points and segments.
+    bool closed_form() {
+        const auto& set = problem_.set;
+        std::vector<Candidate> candidates;
+        const auto add = [&](const Eigen::VectorXd& gamma, const char* method) {
+            candidates.push_back({gamma, method});
+        };
+        if (!request_.level) {
+            if (!is_extreme(request_.objective)) {
+                add(set.least, "least-norm");
+            } else if (reduction_.gap_sign == 0) {
+                refuse_closed_gap_extreme();
+                return true;
+            } else if (request_.objective == Objective::max_energy && set.unbounded()) {
+                answer_.verdict = Verdict::failed;
+                answer_.reason = "the energy of this pattern is unbounded";
+                return true;
+            } else if (set.flat_dimension == 0) {
+                add(set.least, "closed-form");
+            }
+        } else {
+            const double level = *request_.level;
+            const auto same = [&](double end) {
+                return std::abs(level - end) <= options_.level_tolerance * end;
+            };
+            if (reduction_.gap_sign != 0 && same(*answer_.interval.least)) {
+                add(set.least, "least-norm");
+            } else if (answer_.interval.greatest && same(*answer_.interval.greatest)) {
+                for (const auto& vertex : set.vertices) {
+                    if (set.energy(vertex) >= *answer_.interval.greatest * (1 - tie_tolerance)) {
+                        add(vertex, "vertex");
+                    }
+                }
+            } else if (reduction_.gap_sign == 0 ? reduction_.variables() == 1 || set.flat_dimension == 1
+                                                : set.flat_dimension == 1) {
+                for (const auto& point : line_points(reduction_, level)) add(point, "closed-form");
+            }
+        }
+        const Candidate* best = nullptr;
+        double value = infinity;
+        for (const auto& candidate : candidates) {
+            const double objective = objective_value(candidate.gamma);
+            if (objective < value) {
+                value = objective;
+                best = &candidate;
+            }
+        }
+        if (best == nullptr) return false;
+        answer_.agreement = Agreement::not_needed;
+        accept(*best);
+        return true;
+    }
+
+    void refuse_closed_gap_extreme() {
+        answer_.verdict = Verdict::failed;
+        answer_.reason = "a closed gap has orbits at every energy: no least and no greatest";
+    }
+
+    [[nodiscard]] double objective_value(const Eigen::VectorXd& gamma) const {
+        return objective_of_waves(problem_.kernel, request_.objective, reduction_.beta(gamma), reference_);
+    }
+
+    // Lower is better, also for max_energy.
+    [[nodiscard]] double rank(const Eigen::VectorXd& gamma) const {
+        const double value = objective_value(gamma);
+        return request_.objective == Objective::max_energy ? -value : value;
+    }
+
+    struct Best {
+        double rank = infinity;
+        Candidate candidate;
+        SolverRun run;
+        bool usable = false;
+        bool global = false;
+    };
+
+    void optimise() {
+        const auto& set = problem_.set;
+        const OrbitProgram program =
+            orbit_program(reduction_, problem_.kernel, request_.objective, request_.level,
+                          answer_.interval.least.value_or(1.0), reference_);
+        std::optional<LevelPoints> level;
+        if (request_.level) level.emplace(set, *request_.level);
+        const auto start = [&](int k) -> std::optional<Eigen::VectorXd> {
+            if (level) return level->start(k);
+            const auto& vertices = set.vertices;
+            if (vertices.empty()) return set.least;
+            return vertices[static_cast<std::size_t>(k) % vertices.size()];
+        };
+
+        Best ipopt;
+        Best nlopt;
+        const bool with_ipopt = options_.solvers != SolverChoice::nlopt;
+        const bool with_nlopt = options_.solvers != SolverChoice::ipopt;
+        std::vector<SolverRun> others;
+        for (int round = 0; round < options_.starts; ++round) {
+            if (with_ipopt) {
+                const auto begin = start(2 * round);
+                if (begin) attempt(program, level, *begin, "ipopt", 2 * round, ipopt, others);
+            }
+            if (with_nlopt) {
+                const auto begin = start(2 * round + 1);
+                if (begin) {
+                    const int number = 2 * round + 1;
+                    if (!attempt(program, level, *begin, "nlopt-slsqp", number, nlopt, others)) {
+                        attempt(program, level, *begin, "nlopt-auglag", number, nlopt, others);
+                    }
+                }
+            }
+            if (settled(with_ipopt ? &ipopt : nullptr, with_nlopt ? &nlopt : nullptr)) break;
+        }
+
+        compare(with_ipopt, ipopt, with_nlopt, nlopt);
+        if (with_ipopt && !ipopt.run.name.empty()) answer_.solvers.push_back(ipopt.run);
+        if (with_nlopt && !nlopt.run.name.empty()) answer_.solvers.push_back(nlopt.run);
+        answer_.solvers.insert(answer_.solvers.end(), others.begin(), others.end());
+
+        std::vector<Best*> ranked;
+        for (Best* best : {&ipopt, &nlopt}) {
+            if (best->usable) ranked.push_back(best);
+        }
+        std::stable_sort(ranked.begin(), ranked.end(),
+                         [](const Best* a, const Best* b) { return a->rank < b->rank; });
+        for (const Best* best : ranked) {
+            accept(best->candidate);
+            if (answer_.verdict == Verdict::admissible) return;
+        }
+        // Both failed: the segment still gives an orbit of this pattern at this level.
+        if (const auto fallback = start(0)) {
+            const Polished polished = polish(program.program, program.point(*fallback));
+            accept({polished.feasible ? program.gamma(polished.x) : *fallback, "segment"});
+            if (answer_.verdict == Verdict::admissible) {
+                answer_.reason = "no solver answer was usable: polished segment point";
+            }
+        }
+    }
+
+    // One call of one solver, restored, polished and ranked; false when it is not usable.
+    bool attempt(const OrbitProgram& program, const std::optional<LevelPoints>& level,
+                 const Eigen::VectorXd& start, const std::string& solver, int number, Best& best,
+                 std::vector<SolverRun>& others) {
+        const Eigen::VectorXd x = program.point(start);
+        SolverOutcome outcome;
+        if (solver == "ipopt") {
+            outcome = ipopt_.solve(program.program, x);
+        } else {
+            const auto method =
+                solver == "nlopt-slsqp" ? NloptMethod::slsqp : NloptMethod::auglag_lbfgs;
+            outcome = solve_with_nlopt(method, program.program, x, options_.solver);
+        }
+        SolverRun run;
+        run.name = solver;
+        run.start = number;
+        run.status = outcome.status;
+        run.iterations = outcome.iterations;
+        run.seconds = outcome.seconds;
+        run.violation = program.program.violation(outcome.x);
+        run.objective = std::numeric_limits<double>::quiet_NaN();
+
+        Best trial;
+        if (run.violation <= options_.raw_violation) {
+            const auto near = restored(program, problem_.set, level ? &*level : nullptr, outcome.x);
+            if (near) {
+                const Polished polished = polish(program.program, program.point(*near));
+                if (polished.feasible) {
+                    trial.usable = true;
+                    trial.candidate = {program.gamma(polished.x), solver};
+                    trial.rank = rank(trial.candidate.gamma);
+                    trial.global = polished.stationary &&
+                                   polished.objective - polished.lower_bound <=
+                                       options_.agreement_tolerance * std::abs(polished.objective);
+                    run.usable = true;
+                    run.objective = objective_value(trial.candidate.gamma);
+                }
+            }
+        }
+        trial.run = run;
+        const bool better = trial.usable && (!best.usable || trial.rank < best.rank);
+        if (better || best.run.name.empty()) std::swap(best, trial);
+        if (!trial.run.name.empty()) others.push_back(trial.run);
+        return run.usable;
+    }
+
+    [[nodiscard]] static double difference(const Best& a, const Best& b) {
+        const double scale = std::max(std::abs(a.rank), std::abs(b.rank));
+        return scale > 0 ? std::abs(a.rank - b.rank) / scale : 0.0;
+    }
+
+    // No further start can help: every solver asked holds the proved optimum.
+    [[nodiscard]] bool settled(const Best* a, const Best* b) const {
+        if (a == nullptr || b == nullptr) return (a != nullptr ? a : b)->global;
+        return a->usable && b->usable && (a->global || b->global) &&
+               difference(*a, *b) <= options_.agreement_tolerance;
+    }
+
+    void compare(bool with_ipopt, const Best& ipopt, bool with_nlopt, const Best& nlopt) {
+        if (!with_ipopt || !with_nlopt) {
+            const Best& only = with_ipopt ? ipopt : nlopt;
+            answer_.agreement = only.usable ? Agreement::single : Agreement::both_failed;
+            return;
+        }
+        if (ipopt.usable && nlopt.usable) {
+            answer_.objective_difference = difference(ipopt, nlopt);
+            answer_.agreement = *answer_.objective_difference <= options_.agreement_tolerance
+                                    ? Agreement::agree
+                                    : Agreement::different_optimum;
+        } else {
+            answer_.agreement =
+                ipopt.usable || nlopt.usable ? Agreement::one_failed : Agreement::both_failed;
+        }
+    }
+
+    void accept(const Candidate& candidate) {
+        Orbit orbit = make_orbit(bar_, problem_.kernel, reduction_.beta(candidate.gamma));
+        Replay judged = replay(orbit, request_.level);
+        answer_.method = candidate.method;
+        answer_.energy = energy_ratio(orbit);
+        answer_.objective_value = objective_value(candidate.gamma);
+        answer_.classification = classify(orbit);
+        if (judged.accepted) {
+            answer_.verdict = Verdict::admissible;
+        } else {
+            answer_.verdict = Verdict::failed;
+            answer_.reason = judged.same_labels
+                                 ? "replay: worst relative violation " + std::to_string(judged.violations.worst())
+                                 : "replay: the marcher saw other contact steps than the pattern's";
+        }
+        answer_.replay = std::move(judged);
+        if (answer_.verdict == Verdict::admissible) {
+            answer_.orbit = std::move(orbit);
+        } else {
+            answer_.orbit.reset();
+        }
+    }
+
+    const OrbitSolverOptions& options_;
+    IpoptSolver& ipopt_;
+    const Bar& bar_;
+    const PatternProblem& problem_;
+    const OrbitRequest& request_;
+    const Reduction& reduction_;
+    Eigen::VectorXd reference_;
+    OrbitAnswer answer_;
+};
+
+}  // namespace
+
+PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const AdmissibleOptions& options) {
+    validate(pattern);
+    PatternProblem problem;
+    problem.kernel = exact_kernel(pattern);
+    problem.set = admissible_set(reduce(conditions(problem.kernel, gap_sign)), options);
+    if (problem.kernel.dimension() == 0) {
+        problem.verdict = Verdict::trivial;
+    } else if (problem.set.status == AdmissibleSet::Status::empty) {
+        problem.verdict = Verdict::inadmissible;
+    } else if (problem.set.status == AdmissibleSet::Status::nonempty) {
+        problem.verdict = Verdict::admissible;
+    }
+    return problem;
+}
+
+OrbitSolver::OrbitSolver(const OrbitSolverOptions& options) : options_(options), ipopt_(options.solver) {
+    if (options.starts < 1) {
+        throw std::invalid_argument("starts: expected >= 1, got " + std::to_string(options.starts));
+    }
+}
+
+OrbitAnswer OrbitSolver::solve(const Bar& bar, const PatternProblem& problem,
+                               const OrbitRequest& request) {
+    validate(bar);
+    if (bar.gap_sign() != problem.set.reduction.gap_sign) {
+        throw std::invalid_argument("gap sign: expected " +
+                                    std::to_string(problem.set.reduction.gap_sign) + ", got " +
+                                    std::to_string(bar.gap_sign()));
+    }
+    if (request.level && !(std::isfinite(*request.level) && *request.level > 0)) {
+        throw std::invalid_argument("level: expected a finite number > 0, got " +
+                                    std::to_string(*request.level));
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    OrbitAnswer answer = Solve(options_, ipopt_, bar, problem, request).run();
+    answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return answer;
+}
+
+Eigen::VectorXd reference_window(const Orbit& orbit) {
+    return wave_basis(orbit.kernel) * orbit.beta;
+}
+
+}  // namespace nsma
