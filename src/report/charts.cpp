@@ -38,20 +38,25 @@ void sort_by_energy(Candidates& orbits) {
 }  // namespace
 
 OrbitChoice choose_orbits(const StoredSweep& sweep) {
+    int lowest_mode = 0;  // none
+    for (const StoredOrbit& orbit : sweep.orbits) {
+        const int mode = mode_of(orbit.orbit.kernel.pattern).value_or(0);
+        if (mode > 0 && (lowest_mode == 0 || mode < lowest_mode)) lowest_mode = mode;
+    }
     Candidates least, any, others;
     for (const StoredOrbit& orbit : sweep.orbits) {
         if (!(orbit.energy > 0.0)) continue;
-        const bool first_mode = mode_of(orbit.orbit.kernel.pattern) == 1;
-        if (first_mode && !orbit.level) least.push_back(&orbit);
-        if (first_mode) any.push_back(&orbit);
+        const bool of_mode = mode_of(orbit.orbit.kernel.pattern).value_or(-1) == lowest_mode;
+        if (of_mode && !orbit.level) least.push_back(&orbit);
+        if (of_mode) any.push_back(&orbit);
         others.push_back(&orbit);
     }
-    for (Candidates* candidates : {&least, &any}) {
-        if (candidates->size() < 3 && candidates != &any) continue;
-        sort_by_energy(*candidates);
-        if (!candidates->empty()) return {spread_by_energy(*candidates), "first nonsmooth mode"};
+    Candidates& of_mode = least.size() >= 3 ? least : any;
+    if (!of_mode.empty()) {
+        sort_by_energy(of_mode);
+        return {spread_by_energy(of_mode), "orbits of mode k = " + std::to_string(lowest_mode)};
     }
-    // No first mode: of each of the three lowest frequencies its least-energy orbit.
+    // No mode at all: of each of the three lowest frequencies its least-energy orbit.
     std::stable_sort(others.begin(), others.end(), [](const auto* a, const auto* b) {
         const int period_a = a->orbit.kernel.pattern.period_steps();
         const int period_b = b->orbit.kernel.pattern.period_steps();
@@ -66,7 +71,7 @@ OrbitChoice choose_orbits(const StoredSweep& sweep) {
         }
     }
     sort_by_energy(chosen);
-    return {chosen, "patterns of lowest frequency"};
+    return {chosen, "orbits of the lowest frequencies"};
 }
 
 DrawnCharts draw_charts(const std::filesystem::path& sweep_folder) {

@@ -62,7 +62,13 @@ Axes axes_of(const StoredSweep& sweep) {
 
     axes.energy.lo /= 1.5;
     axes.energy.hi *= 1.5;
-    const double margin = std::max(0.04, 0.06 * (axes.frequency.hi - axes.frequency.lo));
+    const double spread = axes.frequency.hi - axes.frequency.lo;
+    // The linear frequency that a branch starts from belongs in the picture when it is near.
+    for (const double nearest : {std::floor(axes.frequency.lo), std::ceil(axes.frequency.hi)}) {
+        const double distance = std::max(axes.frequency.lo - nearest, nearest - axes.frequency.hi);
+        if (nearest >= 1.0 && distance < 0.35 * spread) axes.frequency.add(nearest);
+    }
+    const double margin = spread > 0.0 ? std::max(0.04, 0.06 * spread) : 0.4;
     axes.frequency.lo = std::max(0.0, axes.frequency.lo - margin);
     axes.frequency.hi += margin;
     return axes;
@@ -122,9 +128,12 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
             exact.add(energy, frequency);
         if (points.empty()) continue;
         exact.gap();
+        const auto& [energy, frequency] = points[gap_sign == 0 ? 0 : points.size() / 3];
         labels += fmt::format(
-            "set label 'k = {}' at first {},{} right offset -0.8,0.5 textcolor rgb '#555555'\n",
-            mode, gap_sign == 0 ? axes.energy.hi : points.front().first, points.front().second);
+            "set label 'k = {}' at first {},{} {} textcolor rgb '#555555'\n", mode, energy,
+            frequency,
+            gap_sign == 0 ? "left offset 0.8,0.8"
+                          : (gap_sign > 0 ? "right offset -1.2,0.7" : "right offset -1.0,-0.7"));
     }
     std::string ticks;
     for (int n = std::max(1, static_cast<int>(std::ceil(axes.frequency.lo)));
@@ -170,36 +179,41 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
         "set logscale x\nset format x '{}'\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
         "set xtics out nomirror\nset ytics out nomirror\nset mxtics 10\n"
         "set border 11 linecolor rgb '#333333'\n"
-        "set key outside below center horizontal Left reverse samplen 3 width 1\n{}",
+        "set lmargin screen 0.12\nset rmargin screen 0.93\nset tmargin screen 0.92\n"
+        "set bmargin screen 0.27\nset key at screen 0.525, screen 0.14 center top vertical "
+        "maxrows 3 "
+        "Left reverse samplen 3 width 1\n{}",
         gnuplot_text(sweep.scene.title),
         gap_sign == 0 ? "energy E (J)" : "energy E/E_g,  E_g = Y S d^2 / (2L)",
         few_decades ? "%g" : "10^{%L}", axes.energy.lo, axes.energy.hi, axes.frequency.lo,
         axes.frequency.hi, labels);
     if (!ticks.empty()) {
-        chart.commands += fmt::format("set y2range [{}:{}]\nset y2tics out ({})\n",
-                                      axes.frequency.lo, axes.frequency.hi, ticks);
+        chart.commands += fmt::format(
+            "set y2range [{}:{}]\nset y2tics out "
+            "({})\n",
+            axes.frequency.lo, axes.frequency.hi, ticks);
     }
+    bool first = true;
     const auto plot = [&](const Block& block, const char* using_columns, const char* style,
                           const char* title) {
         if (block.rows.empty()) return;
         chart.data += fmt::format("\n\n# {}\n{}", block.name, block.rows);
         chart.commands +=
             fmt::format("{} 'frequency-energy.dat' index '{}' using {} with {} title '{}'",
-                        chart.commands.find("plot ") == std::string::npos ? "plot" : ", \\\n    ",
-                        block.name, using_columns, style, title);
+                        first ? "plot" : ", \\\n    ", block.name, using_columns, style, title);
+        first = false;
     };
     plot(linear_free, "1:2", "lines lw 1 dt 2 lc rgb '#888888'", "linear, free end");
     plot(linear_fixed, "1:2", "lines lw 1 dt 3 lc rgb '#888888'", "linear, end held");
-    plot(exact, "1:2", "lines lw 5 lc rgb '#c8c8c8'", "exact nonsmooth modes k");
+    plot(exact, "1:2", "lines lw 5 lc rgb '#c8c8c8'", "exact mode k");
     plot(interval, "1:2:3:(0)", "vectors nohead lw 2 lc rgb '#0072b2'", "energy interval");
     plot(open, "1:2:3:(0)", "vectors head filled size screen 0.012,18 lw 2 lc rgb '#0072b2'",
          "unbounded interval");
     plot(least, "1:2", "points pt 13 ps 0.8 lc rgb '#0072b2'", "least energy");
     plot(single, "1:2", "points pt 7 ps 0.7 lc rgb '#000000'", "single orbit");
     plot(solved, "1:2", "points pt 6 ps 1.0 lw 1.5 lc rgb '#d55e00'", "level solved");
-    plot(doubtful, "1:2", "points pt 2 ps 1.0 lw 1.5 lc rgb '#d55e00'",
-         "solved, the two solvers differ");
-    if (chart.commands.find("plot ") == std::string::npos) chart.commands += "plot NaN notitle";
+    plot(doubtful, "1:2", "points pt 2 ps 1.0 lw 1.5 lc rgb '#d55e00'", "solvers differ");
+    if (first) chart.commands += "plot NaN notitle";
     chart.commands += "\n";
     return chart;
 }

@@ -21,11 +21,11 @@ struct Chart {
 /// as points, energy intervals as lines (an arrow when unbounded), solved levels marked.
 [[nodiscard]] Chart frequency_energy_chart(const StoredSweep& sweep);
 
-/// Orbits worth drawing: three well-separated energies of the first nonsmooth mode or, without
-/// any, of the admissible patterns of lowest frequency; least-energy orbits are preferred.
+/// Orbits worth drawing: three well-separated energies of the lowest nonsmooth mode or, without
+/// any, one orbit of each of the three lowest frequencies; least-energy orbits are preferred.
 struct OrbitChoice {
     std::vector<const StoredOrbit*> orbits;  ///< by increasing energy, at most three
-    std::string what;                        ///< e.g. "first nonsmooth mode"
+    std::string what;                        ///< e.g. "orbits of mode k = 1"
 };
 [[nodiscard]] OrbitChoice choose_orbits(const StoredSweep& sweep);
 
