@@ -257,22 +257,27 @@ private:
         const bool with_ipopt = options_.solvers != SolverChoice::nlopt;
         const bool with_nlopt = options_.solvers != SolverChoice::ipopt;
         std::vector<SolverRun> others;
-        for (int round = 0; round < options_.starts; ++round) {
-            if (with_ipopt) {
-                const auto begin = start(2 * round);
-                if (begin) attempt(program, level, *begin, "ipopt", 2 * round, ipopt, others);
-            }
-            if (with_nlopt) {
-                const auto begin = start(2 * round + 1);
-                if (begin) {
-                    const int number = 2 * round + 1;
-                    if (!attempt(program, level, *begin, "nlopt-slsqp", number, nlopt, others)) {
-                        attempt(program, level, *begin, "nlopt-auglag", number, nlopt, others);
-                    }
+        // NLopt is some twenty times cheaper a call, so it does the search among local optima;
+        // Ipopt starts elsewhere and goes on to further starts only while it holds a worse one.
+        int next = 1;
+        const auto search_with_nlopt = [&] {
+            for (int k = 0; k < options_.starts && !nlopt.global; ++k, ++next) {
+                const auto begin = start(next);
+                if (!begin) return;
+                if (!attempt(program, level, *begin, "nlopt-slsqp", next, nlopt, others)) {
+                    attempt(program, level, *begin, "nlopt-auglag", next, nlopt, others);
                 }
             }
-            if (settled(with_ipopt ? &ipopt : nullptr, with_nlopt ? &nlopt : nullptr)) break;
+        };
+        if (with_nlopt) search_with_nlopt();
+        for (int k = 0; with_ipopt && k < options_.starts && !ipopt.global; ++k) {
+            const int number = k == 0 ? 0 : next++;
+            const auto begin = start(number);
+            if (!begin) break;
+            attempt(program, level, *begin, "ipopt", number, ipopt, others);
+            if (with_nlopt && nlopt.usable && not_worse(ipopt, nlopt)) break;
         }
+        if (with_nlopt && with_ipopt && ipopt.usable && !not_worse(nlopt, ipopt)) search_with_nlopt();
 
         compare(with_ipopt, ipopt, with_nlopt, nlopt);
         if (with_ipopt && !ipopt.run.name.empty()) answer_.solvers.push_back(ipopt.run);
@@ -350,11 +355,8 @@ private:
         return scale > 0 ? std::abs(a.rank - b.rank) / scale : 0.0;
     }
 
-    // No further start can help: every solver asked holds the proved optimum.
-    [[nodiscard]] bool settled(const Best* a, const Best* b) const {
-        if (a == nullptr || b == nullptr) return (a != nullptr ? a : b)->global;
-        return a->usable && b->usable && (a->global || b->global) &&
-               difference(*a, *b) <= options_.agreement_tolerance;
+    [[nodiscard]] bool not_worse(const Best& a, const Best& b) const {
+        return a.usable && (a.rank <= b.rank || difference(a, b) <= options_.agreement_tolerance);
     }
 
     void compare(bool with_ipopt, const Best& ipopt, bool with_nlopt, const Best& nlopt) {

@@ -24,7 +24,7 @@ enum class SolverChoice { ipopt, nlopt, both };
 
 struct OrbitSolverOptions {
     SolverChoice solvers = SolverChoice::both;
-    int starts = 4;                     ///< starts per solver where the optimum is not proved, >= 1
+    int starts = 8;                     ///< starts per solver while the optimum is not proved, >= 1
     double agreement_tolerance = 1e-6;  ///< relative difference of objectives that still agree
     double raw_violation = 1e-4;        ///< a raw answer further out is a failure of its solver
     double level_tolerance = 1e-15;     ///< relative; a level this close to an end is the end

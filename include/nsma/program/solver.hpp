@@ -11,7 +11,7 @@ namespace nsma {
 
 struct SolverOptions {
     double tolerance = 1e-10;   ///< relative stopping tolerance handed to the library
-    int max_iterations = 300;   ///< Ipopt iterations; NLopt evaluations are 10 times this
+    int max_iterations = 150;   ///< Ipopt iterations; NLopt evaluations are 10 times this
     double time_limit = 10.0;   ///< seconds a call
 };
 

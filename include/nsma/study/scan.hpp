@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+
+#include "nsma/program/orbit_solver.hpp"
+#include "nsma/study/records.hpp"
+#include "nsma/study/scene.hpp"
+
+namespace nsma {
+
+/// Verdict and energy interval of one pattern for a gap of the given sign.
+[[nodiscard]] PatternRecord pattern_record(const PatternProblem& problem, int gap_sign, double seconds);
+
+/// Scans every pattern of the scene in its order, trivial ones included, and hands each record
+/// on as it comes. `keep_going` is asked before each pattern.
+void scan(const Scene& scene, const std::function<void(const PatternRecord&)>& record,
+          const std::function<bool()>& keep_going);
+
+}  // namespace nsma
