@@ -1,0 +1,195 @@
+#include "command_line.hpp"
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <CLI/CLI.hpp>
+
+#include "nsma/program/linear_program.hpp"
+#include "nsma/report/scene_file.hpp"
+
+namespace nsma::app {
+namespace {
+
+constexpr const char* exit_codes =
+    "Exit: 0 done, 2 bad usage or scene, 3 nothing admissible, 4 a solver failed or the two\n"
+    "disagree beyond tolerance, 130 interrupted (what was done is kept).";
+
+std::string version() {
+    return "nsma " NSMA_VERSION " (Ipopt " + ipopt_version() + ", NLopt " + nlopt_version() +
+           ", CLP " + clp_version() + ")";
+}
+
+const CLI::Validator finite{
+    [](const std::string& text) -> std::string {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value)) return {};
+        return "expected a finite number, got " + text;
+    },
+    "NUMBER"};
+
+const CLI::Validator finite_positive{
+    [](const std::string& text) -> std::string {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return {};
+        return "expected a finite number > 0, got " + text;
+    },
+    "NUMBER>0"};
+
+CLI::Validator whole(int lo, int hi) {
+    return {[lo, hi](const std::string& text) -> std::string {
+                std::int64_t value = 0;
+                if (CLI::detail::lexical_cast(text, value) && value >= lo && value <= hi) return {};
+                return "expected a whole number in " + std::to_string(lo) + ".." +
+                       std::to_string(hi) + ", got " + text;
+            },
+            "INTEGER"};
+}
+
+const CLI::Validator objective_validator{
+    [](const std::string& text) -> std::string {
+        if (objective_named(text)) return {};
+        return "expected least-shock, nearest, least-force, min-energy or max-energy, got " + text;
+    },
+    "NAME"};
+
+void add_scene(CLI::App& command, SceneArguments& scene) {
+    command.add_option("SCENE", scene.file, "scene file (TOML)")->required();
+    command.add_option("--cells", scene.cells, "cells N instead of the scene's")->check(whole(1, max_cells));
+    command.add_option("--gap", scene.gap, "gap d [m] instead of the scene's; negative: prestressed")->check(finite);
+}
+
+void add_quiet(CLI::App& command, bool& quiet) {
+    command.add_flag("--quiet", quiet, "no progress on stderr");
+}
+
+// Options that a user tunes a solver with; the names of the choices as the user types them.
+struct SolverWords {
+    std::string solver = "both";
+    void add(CLI::App& command, OrbitSolverOptions& options) {
+        command.add_option("--solver", solver, "ipopt, nlopt or both (default)")
+            ->check(CLI::Validator(
+                [](const std::string& text) -> std::string {
+                    if (text == "ipopt" || text == "nlopt" || text == "both") return {};
+                    return "expected ipopt, nlopt or both, got " + text;
+                },
+                "NAME"));
+        command.add_option("--starts", options.starts,
+                           "starts per solver while the optimum is not proved (default 8)")
+            ->check(whole(1, 10'000));
+    }
+    [[nodiscard]] SolverChoice choice() const {
+        if (solver == "ipopt") return SolverChoice::ipopt;
+        return solver == "nlopt" ? SolverChoice::nlopt : SolverChoice::both;
+    }
+};
+
+// "--gap: Required ..." etc. on one line.
+std::string one_line(std::string text) {
+    for (auto& c : text) {
+        if (c == '\n' || c == '\r') c = ' ';
+    }
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    return text;
+}
+
+}  // namespace
+
+Arguments parse(int count, const char* const* words) {
+    CLI::App app{"Nonsmooth modal analysis of a bar in unilateral contact, by the Wave Finite Element Method.",
+                 "nsma"};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", version());
+    app.footer(std::string("Examples:\n"
+                           "  nsma scan problems/first-mode.toml --cells 6 --period 0 4\n"
+                           "  nsma orbit problems/first-mode.toml --free 48 --contact 16 --energy 37.5\n"
+                           "  nsma sweep problems/first-mode.toml --out out/first-mode\n"
+                           "  nsma plot out/first-mode\n") +
+               exit_codes);
+
+    ScanArguments scan;
+    std::vector<double> period;
+    auto* scan_command = app.add_subcommand("scan", "list the patterns (r, p) with a nontrivial kernel, their verdicts and energy intervals");
+    add_scene(*scan_command, scan.scene);
+    scan_command->add_option("--period", period, "periods LO HI in units of tau instead of the scene's patterns")
+        ->expected(2)->check(finite);
+    scan_command->add_flag("--csv", scan.csv, "CSV on stdout instead of a table");
+    add_quiet(*scan_command, scan.quiet);
+    scan_command->footer("Examples:\n"
+                         "  nsma scan problems/first-mode.toml\n"
+                         "  nsma scan problems/first-mode.toml --cells 6 --gap 1 --period 0 4 --csv");
+
+    OrbitArguments orbit;
+    SolverWords orbit_words;
+    std::string objective;
+    auto* orbit_command = app.add_subcommand("orbit", "one orbit of one pattern");
+    add_scene(*orbit_command, orbit.scene);
+    orbit_command->add_option("--free", orbit.free_steps, "free flight r [steps]")->required()->check(whole(1, max_period_steps / 2));
+    orbit_command->add_option("--contact", orbit.contact_steps, "contact phase p [steps]")->required()->check(whole(1, max_period_steps / 2));
+    orbit_command->add_option("--energy", orbit.energy,
+                              "energy ratio E/E_g (joules for a closed gap); without it the least-energy orbit")
+        ->check(finite_positive);
+    orbit_command->add_option("--objective", objective,
+                              "least-shock, nearest, least-force, min-energy or max-energy instead of the scene's")
+        ->check(objective_validator);
+    orbit_words.add(*orbit_command, orbit.solver);
+    orbit_command->add_flag("--json", orbit.json, "one JSON object on stdout instead of text");
+    orbit_command->footer("Examples:\n"
+                          "  nsma orbit problems/first-mode.toml --free 48 --contact 16\n"
+                          "  nsma orbit problems/first-mode.toml --cells 6 --free 23 --contact 1 --energy 1.6 --json");
+
+    SweepArguments sweep;
+    SolverWords sweep_words;
+    auto* sweep_command = app.add_subcommand("sweep", "every pattern of the scene at every energy level: table, orbits, charts");
+    sweep_command->add_option("SCENE", sweep.scene_file, "scene file (TOML)")->required();
+    sweep_command->add_option("--out", sweep.out, "folder for the results; made if missing")->required();
+    sweep_words.add(*sweep_command, sweep.solver);
+    add_quiet(*sweep_command, sweep.quiet);
+    sweep_command->footer("Example:\n  nsma sweep problems/first-mode.toml --out out/first-mode");
+
+    PlotArguments plot;
+    auto* plot_command = app.add_subcommand("plot", "draw the charts of a stored sweep again");
+    plot_command->add_option("DIR", plot.folder, "folder of a sweep")->required();
+    add_quiet(*plot_command, plot.quiet);
+    plot_command->footer("Example:\n  nsma plot out/first-mode");
+
+    for (auto* command : {scan_command, orbit_command, sweep_command, plot_command}) {
+        command->failure_message(CLI::FailureMessage::simple);
+    }
+    try {
+        app.parse(count, words);
+    } catch (const CLI::CallForHelp&) {
+        const auto chosen = app.get_subcommands();
+        return TextArguments{chosen.empty() ? app.help() : chosen.front()->help()};
+    } catch (const CLI::CallForAllHelp&) {
+        return TextArguments{app.help("", CLI::AppFormatMode::All)};
+    } catch (const CLI::CallForVersion&) {
+        return TextArguments{version() + "\n"};
+    } catch (const CLI::ParseError& error) {
+        throw InputError("command line: " + one_line(error.what()) + " (see nsma --help)");
+    }
+
+    if (*scan_command) {
+        if (!period.empty()) {
+            if (period[0] < 0 || period[1] < period[0]) {
+                throw InputError("command line: --period: expected 0 <= LO <= HI, got " +
+                                 std::to_string(period[0]) + " " + std::to_string(period[1]));
+            }
+            scan.period = {period[0], period[1]};
+        }
+        return scan;
+    }
+    if (*orbit_command) {
+        orbit.solver.solvers = orbit_words.choice();
+        if (!objective.empty()) orbit.objective = objective_named(objective);
+        return orbit;
+    }
+    if (*sweep_command) {
+        sweep.solver.solvers = sweep_words.choice();
+        return sweep;
+    }
+    return plot;
+}
+
+}  // namespace nsma::app

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "nsma/program/orbit_solver.hpp"
+
+namespace nsma::app {
+
+/// What a scene file says may be said anew on the command line.
+struct SceneArguments {
+    std::string file;
+    std::optional<int> cells;
+    std::optional<double> gap;  ///< [m]
+};
+
+struct ScanArguments {
+    SceneArguments scene;
+    std::optional<std::array<double, 2>> period;  ///< [lo, hi] in units of tau
+    bool csv = false;
+    bool quiet = false;
+};
+
+struct OrbitArguments {
+    SceneArguments scene;
+    int free_steps = 0;
+    int contact_steps = 0;
+    std::optional<double> energy;
+    std::optional<Objective> objective;  ///< absent: the scene's
+    OrbitSolverOptions solver;
+    bool json = false;
+};
+
+struct SweepArguments {
+    std::string scene_file;
+    std::string out;
+    OrbitSolverOptions solver;
+    bool quiet = false;
+};
+
+struct PlotArguments {
+    std::string folder;
+    bool quiet = false;
+};
+
+/// Help or version text was asked: print and leave with 0.
+struct TextArguments {
+    std::string text;
+};
+
+using Arguments =
+    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, PlotArguments>;
+
+/// Reads the command line. Throws InputError (one line) on anything it cannot take.
+[[nodiscard]] Arguments parse(int count, const char* const* words);
+
+}  // namespace nsma::app

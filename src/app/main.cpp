@@ -1,0 +1,40 @@
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <variant>
+
+#include "commands.hpp"
+
+#include "nsma/report/scene_file.hpp"
+
+namespace {
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+// The first Ctrl-C asks for an orderly end, the second ends at once.
+extern "C" void on_interrupt(int signal) {
+    if (stop_requested.exchange(true)) {
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
+    }
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+    std::signal(SIGPIPE, SIG_IGN);
+    try {
+        const auto arguments = nsma::app::parse(count, words);
+        return std::visit([](const auto& chosen) { return nsma::app::run(chosen, stop_requested); }, arguments);
+    } catch (const nsma::InputError& error) {
+        std::fprintf(stderr, "nsma: %s\n", error.what());
+        return nsma::app::exit_input;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "nsma: internal error: %s\n", error.what());
+        return nsma::app::exit_solver;
+    }
+}

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include "commands.hpp"
+
+#include "nsma/report/orbit_json.hpp"
+#include "nsma/report/scene_file.hpp"
+
+namespace nsma::app {
+namespace {
+
+std::string energy_text(double energy, bool closed) {
+    return closed ? fmt::format("{:.10g} J", energy) : fmt::format("{:.10g} E_g", energy);
+}
+
+void print_text(const OrbitAnswer& answer, const Bar& bar) {
+    const bool closed = answer.gap_sign == 0;
+    const Pattern& pattern = answer.pattern;
+    fmt::print("pattern       r = {}, p = {}, N = {}: m = {}, T/tau = {:.6g}, omega/omega_1 = {:.6g}\n",
+               pattern.free_steps, pattern.contact_steps, pattern.cells, answer.kernel_dimension,
+               pattern.period_ratio(), pattern.frequency_ratio());
+    fmt::print("verdict       {}{}{}\n", name(answer.verdict), answer.reason.empty() ? "" : ": ", answer.reason);
+    if (answer.interval.least) {
+        const std::string greatest = answer.interval.unbounded ? "unbounded"
+                                     : answer.interval.greatest
+                                         ? energy_text(*answer.interval.greatest, closed)
+                                         : "unknown";
+        fmt::print("energies      {} to {}\n", energy_text(*answer.interval.least, closed), greatest);
+    }
+    if (!answer.orbit) return;
+    fmt::print("energy        {} = {:.10g} J\n", energy_text(*answer.energy, closed), energy(*answer.orbit));
+    fmt::print("objective     {} = {:.10g} (by {})\n", name(answer.objective), *answer.objective_value, answer.method);
+    const auto& violations = answer.replay->violations;
+    fmt::print("replay        periodicity {:.1e}, COND1 {:.1e}, COND2 {:.1e}, COND3 {:.1e}, energy {:.1e} (relative)\n",
+               violations.periodicity, violations.cond1, violations.cond2, violations.cond3, violations.energy);
+    const auto& kind = *answer.classification;
+    fmt::print("kind          minimal period {} steps, {} silent contact steps, {} touches in flight, {} support\n",
+               kind.minimal_period_steps, kind.silent_contact_steps, kind.wall_touches,
+               kind.full_support ? "full" : "partial");
+    fmt::print("peak force    {:.6g} N\n", contact_force(*answer.orbit).cwiseAbs().maxCoeff());
+    for (const auto& run : answer.solvers) {
+        fmt::print("{:<13} start {}: {}, {} iterations, {:.1f} ms, objective {}, raw violation {:.1e}\n",
+                   run.name, run.start, run.status, run.iterations, 1e3 * run.seconds,
+                   run.usable ? fmt::format("{:.10g}", run.objective) : "unusable", run.violation);
+    }
+    fmt::print("agreement     {}{}\n", name(answer.agreement),
+               answer.objective_difference ? fmt::format(" (relative difference {:.1e})", *answer.objective_difference) : "");
+    fmt::print("alpha [m/s]  ");
+    const Eigen::VectorXd alpha = amplitudes(*answer.orbit);
+    for (const double value : alpha) fmt::print(" {:.6g}", value);
+    fmt::print("\ngap           {:g} m\n", bar.gap);
+}
+
+}  // namespace
+
+int run(const OrbitArguments& arguments, const std::atomic<bool>&) {
+    const Scene scene = load_scene(arguments.scene);
+    const Pattern pattern{scene.mesh.cells, arguments.free_steps, arguments.contact_steps};
+    const int gap_sign = scene.bar.gap_sign();
+    OrbitRequest request;
+    request.objective = arguments.objective.value_or(scene.objective);
+    request.level = arguments.energy;
+    const bool extreme = request.objective == Objective::min_energy || request.objective == Objective::max_energy;
+    if (extreme && request.level) {
+        throw InputError(fmt::format("command line: --energy: expected none with objective {}, got {}",
+                                     name(request.objective), *request.level));
+    }
+    if (gap_sign == 0 && extreme) {
+        throw InputError(fmt::format("command line: --objective: expected one at a given energy for a closed gap, got {}",
+                                     name(request.objective)));
+    }
+    if (gap_sign == 0 && !request.level) {
+        throw InputError("command line: --energy: expected joules (a closed gap has no least-energy orbit), got none");
+    }
+    OrbitSolver solver(arguments.solver);
+    const OrbitAnswer answer = solver.solve(scene.bar, pattern_problem(pattern, gap_sign), request);
+    if (arguments.json) {
+        fmt::print("{}\n", orbit_json(answer, scene.bar));
+    } else {
+        print_text(answer, scene.bar);
+    }
+    if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
+    switch (answer.verdict) {
+        case Verdict::admissible: break;
+        case Verdict::failed: return exit_solver;
+        default: return exit_inadmissible;
+    }
+    switch (answer.agreement) {
+        case Agreement::not_needed:
+        case Agreement::agree:
+        case Agreement::single: return exit_done;
+        default: return exit_solver;
+    }
+}
+
+}  // namespace nsma::app
