@@ -209,10 +209,10 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
     plot(interval, "1:2:3:(0)", "vectors nohead lw 2 lc rgb '#0072b2'", "energy interval");
     plot(open, "1:2:3:(0)", "vectors head filled size screen 0.012,18 lw 2 lc rgb '#0072b2'",
          "unbounded interval");
-    plot(least, "1:2", "points pt 13 ps 0.8 lc rgb '#0072b2'", "least energy");
-    plot(single, "1:2", "points pt 7 ps 0.7 lc rgb '#000000'", "single orbit");
-    plot(solved, "1:2", "points pt 6 ps 1.0 lw 1.5 lc rgb '#d55e00'", "level solved");
-    plot(doubtful, "1:2", "points pt 2 ps 1.0 lw 1.5 lc rgb '#d55e00'", "solvers differ");
+    plot(least, "1:2", "points pt 13 ps 0.8*mark lc rgb '#0072b2'", "least energy");
+    plot(single, "1:2", "points pt 7 ps 0.7*mark lc rgb '#000000'", "single orbit");
+    plot(solved, "1:2", "points pt 6 ps 1.1*mark lw 2 lc rgb '#d55e00'", "level solved");
+    plot(doubtful, "1:2", "points pt 2 ps 1.1*mark lw 2 lc rgb '#d55e00'", "solvers differ");
     if (first) chart.commands += "plot NaN notitle";
     chart.commands += "\n";
     return chart;

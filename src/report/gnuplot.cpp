@@ -27,12 +27,13 @@ constexpr const char* script_head = R"(# Drawn by nsma; draw again with: gnuplot
 set encoding utf8
 do for [format in "svg png"] {{
 if (format eq "svg") {{
-    set terminal svg size 1000,625 font 'sans-serif,14' linewidth 1 pointscale 0.7 enhanced background rgb 'white'
+    set terminal svg size 1000,625 font 'sans-serif,14' linewidth 1 enhanced background rgb 'white'
 }} else {{
     set terminal pngcairo size 1600,1000 font 'sans-serif,14' fontscale 1.5 linewidth 1.6 pointscale 1.6 enhanced
 }}
 set output '{0}.'.format
 reset
+mark = format eq "svg" ? 0.65 : 1.0
 )";
 
 void write_file(const fs::path& path, const std::string& text) {

@@ -92,14 +92,15 @@ Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
             const std::string source = fmt::format("'orbits.dat' index '{}-{}'", quantity, i + 1);
             return fmt::format(
                 ", \\\n     {0} using 1:2 with lines lw 2 {1} notitle, \\\n     {0} using 1:3 with "
-                "points ps 0.8 pt {2} {1} notitle",
+                "points ps 0.8*mark pt {2} {1} notitle",
                 source, lines[i], marks[i]);
         };
         tips += curve("tip");
         forces += curve("force");
         // The legend belongs to both panels: it stands once, below, drawn with the second.
-        forces += fmt::format(", \\\n     NaN with linespoints lw 2 ps 0.8 pt {} {} title '{}'",
-                              marks[i], lines[i], orbit_label(stored, bar));
+        forces +=
+            fmt::format(", \\\n     NaN with linespoints lw 2 ps 0.8*mark pt {} {} title '{}'",
+                        marks[i], lines[i], orbit_label(stored, bar));
     }
     const double head = 0.12 * std::max((bar.gap - lowest) * length.factor, 1e-9);
     const double force_scale = std::max(largest_force * force.factor, 1e-9);
@@ -157,8 +158,11 @@ Chart space_time_chart(const StoredSweep& sweep, const StoredOrbit& stored) {
         const long n = static_cast<long>(std::floor(when));
         return waves[static_cast<std::size_t>(n % steps)];
     };
-    // The same resolution in place and time, a whole number of samples a cell where it can be.
-    const int columns = cells < 200 ? cells * ((200 + cells - 1) / cells) : 200;
+    // The same resolution in place and time, about 200 000 samples, a whole number of samples a
+    // cell where it can be.
+    const int wanted =
+        static_cast<int>(std::clamp(std::sqrt(2e5 / pattern.period_ratio()), 20.0, 400.0));
+    const int columns = cells < wanted ? cells * ((wanted + cells - 1) / cells) : wanted;
     const int rows =
         static_cast<int>(std::clamp(std::round(columns * pattern.period_ratio()), 2.0, 1000.0));
     const double impedance = orbit.bar.impedance();
