@@ -1,0 +1,137 @@
+#include "nsma/report/tables.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gmock/gmock.h>
+
+#include "../../src/report/csv.hpp"
+#include "sample.hpp"
+
+namespace nsma {
+namespace {
+
+PatternRecord admissible_record() {
+    PatternRecord record;
+    record.pattern = {6, 16, 4};
+    record.kernel_dimension = 4;
+    record.verdict = Verdict::admissible;
+    record.interval = {9.0, 36.0, false};
+    return record;
+}
+
+TEST(Tables, ScanHasTheAgreedColumns) {
+    EXPECT_EQ(scan_csv_header(),
+              "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,"
+              "verdict,energy_ratio_min,energy_ratio_max");
+    EXPECT_EQ(scan_csv_row(Bar{}, admissible_record()), "6,1,16,4,20,4,1.2,admissible,9,36");
+}
+
+TEST(Tables, NoValueIsAnEmptyField) {
+    PatternRecord record = admissible_record();
+    record.interval = {9.0, std::nullopt, true};
+    EXPECT_EQ(scan_csv_row(Bar{}, record), "6,1,16,4,20,4,1.2,admissible,9,");
+    record.verdict = Verdict::inadmissible;
+    record.interval = {};
+    EXPECT_EQ(scan_csv_row(Bar{}, record), "6,1,16,4,20,4,1.2,inadmissible,,");
+}
+
+TEST(Tables, AClosedGapHasNoRatios) {
+    Bar bar;
+    bar.gap = 0.0;
+    PatternRecord record = admissible_record();
+    record.gap_sign = 0;
+    EXPECT_EQ(scan_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,");
+    EXPECT_EQ(patterns_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,,9,36,false,");
+}
+
+TEST(Tables, EveryRowHasAsManyFieldsAsItsHeader) {
+    const Bar bar;
+    const auto fields = [](const std::string& line) { return csv_fields(line).size(); };
+    EXPECT_EQ(fields(patterns_csv_row(bar, admissible_record())), fields(patterns_csv_header()));
+    OrbitAnswer answer = sample::least_energy_answer(bar, {20, 48, 16});
+    EXPECT_EQ(fields(levels_csv_row(bar, answer)), fields(levels_csv_header()));
+    answer.solvers = {{"ipopt", 0, "Solve_Succeeded", true, 1.5, 1e-12, 7, 0.01},
+                      {"nlopt-slsqp", 1, "XTOL_REACHED", false, 1.6, 0.5, 9, 0.02}};
+    answer.reason = "a, b \"c\"\nd";
+    const std::string row = levels_csv_row(bar, answer);
+    EXPECT_EQ(fields(row), fields(levels_csv_header()));
+    EXPECT_THAT(row, testing::EndsWith(",Solve_Succeeded,1.5,XTOL_REACHED,"));
+    EXPECT_EQ(csv_fields(row)[10], "a, b \"c\" d");
+    const auto timings = timings_csv_rows(answer);
+    ASSERT_EQ(timings.size(), 3U);
+    for (const std::string& line : timings)
+        EXPECT_EQ(fields(line), fields(timings_csv_header()));
+    OrbitAnswer below;
+    below.verdict = Verdict::below;
+    below.pattern = {20, 48, 16};
+    EXPECT_EQ(fields(levels_csv_row(bar, below)), fields(levels_csv_header()));
+}
+
+TEST(Tables, NumbersReadBackToTheSameDouble) {
+    std::mt19937_64 random(20160);  // fixed seed
+    std::vector<double> values{0.0, 0.1, 1.0 / 3.0, 5e-324, 1.7976931348623157e308, -2.5e-17};
+    for (int i = 0; i < 10000; ++i) {
+        double value = 0;
+        const std::uint64_t bits = random();
+        std::memcpy(&value, &bits, sizeof value);
+        if (std::isfinite(value)) values.push_back(value);
+    }
+    for (const double value : values) {
+        const std::string text = csv_number(value);
+        double again = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), again);
+        ASSERT_TRUE(error == std::errc() && end == text.data() + text.size()) << text;
+        ASSERT_EQ(again, value) << text;
+    }
+    EXPECT_EQ(csv_number(std::nan("")), "");
+    EXPECT_EQ(csv_number(std::numeric_limits<double>::infinity()), "");
+}
+
+TEST(Tables, ScanTableIsAligned) {
+    PatternRecord open = admissible_record();
+    open.interval = {9.0, std::nullopt, true};
+    std::istringstream lines(scan_table(Bar{}, {admissible_record(), open}));
+    std::size_t width = 0;
+    int count = 0;
+    for (std::string line; std::getline(lines, line); ++count) {
+        if (width == 0) width = line.size();
+        EXPECT_EQ(line.size(), width) << line;
+    }
+    EXPECT_EQ(count, 3);
+    EXPECT_THAT(scan_table(Bar{}, {open}), testing::HasSubstr("inf"));
+}
+
+TEST(Tables, SummaryNamesEveryCount) {
+    SweepSummary summary;
+    summary.worst_violation = 1.25e-15;
+    const std::string table = summary_table(summary);
+    for (const char* word : {"patterns", "trivial", "inadmissible", "admissible", "solved", "agree",
+                             "different optima", "failed", "1.25e-15", "time [s]"}) {
+        EXPECT_THAT(table, testing::HasSubstr(word));
+    }
+    summary.interrupted = true;
+    EXPECT_THAT(summary_table(summary), testing::StartsWith("interrupted"));
+}
+
+/// The closed-form table against the program: data that the program did not make.
+TEST(ReferenceTables, BackbonesEqualTheClosedFormOfTheProgram) {
+    CsvTable table(std::filesystem::path(NSMA_DATA) / "mode-backbones.csv");
+    int rows = 0;
+    for (; table.next(); ++rows) {
+        const Pattern pattern{table.integer("cells"), table.integer("free_steps"),
+                              table.integer("contact_steps")};
+        EXPECT_EQ(pattern.period_steps(), table.integer("period_steps"));
+        EXPECT_EQ(mode_of(pattern), table.integer("mode"));
+        const double energy = *table.number("energy_ratio");
+        // 1e-12: the denominator k^2 T/tau - (2k+1) loses up to 120 units of rounding.
+        EXPECT_NEAR(backbone_energy_ratio(table.integer("mode"), pattern.period_ratio()) / energy,
+                    1.0, 1e-12);
+    }
+    EXPECT_GT(rows, 300);
+}
+
+}  // namespace
+}  // namespace nsma
