@@ -277,7 +277,19 @@ private:
             attempt(program, level, *begin, "ipopt", number, ipopt, others);
             if (with_nlopt && nlopt.usable && not_worse(ipopt, nlopt)) break;
         }
-        if (with_nlopt && with_ipopt && ipopt.usable && !not_worse(nlopt, ipopt)) search_with_nlopt();
+        if (with_nlopt && with_ipopt) {
+            if (ipopt.usable && !not_worse(nlopt, ipopt)) search_with_nlopt();
+            // Where one still holds a worse optimum it is asked about the better one: does it,
+            // started off to the side, come to the same point?
+            const auto ask = [&](const Best& better, Best& worse, const char* solver) {
+                if (!better.usable || not_worse(worse, better)) return;
+                const int number = next++;
+                const auto aside = aside_of(better.candidate.gamma, level, start(number));
+                if (aside) attempt(program, level, *aside, solver, number, worse, others);
+            };
+            ask(nlopt, ipopt, "ipopt");
+            ask(ipopt, nlopt, "nlopt-slsqp");
+        }
 
         compare(with_ipopt, ipopt, with_nlopt, nlopt);
         if (with_ipopt && !ipopt.run.name.empty()) answer_.solvers.push_back(ipopt.run);
@@ -353,6 +365,15 @@ private:
     [[nodiscard]] static double difference(const Best& a, const Best& b) {
         const double scale = std::max(std::abs(a.rank), std::abs(b.rank));
         return scale > 0 ? std::abs(a.rank - b.rank) / scale : 0.0;
+    }
+
+    // A point on the level a tenth of the way from `gamma` to another admissible point.
+    [[nodiscard]] static std::optional<Eigen::VectorXd> aside_of(
+        const Eigen::VectorXd& gamma, const std::optional<LevelPoints>& level,
+        const std::optional<Eigen::VectorXd>& other) {
+        if (!other) return std::nullopt;
+        Eigen::VectorXd aside = 0.9 * gamma + 0.1 * *other;
+        return level ? level->reach(aside) : std::optional(std::move(aside));
     }
 
     [[nodiscard]] bool not_worse(const Best& a, const Best& b) const {
