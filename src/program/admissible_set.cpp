@@ -197,6 +197,19 @@ void find_vertices(AdmissibleSet& set, LinearSolver& solver) {
         direction[j] = -1;
         climber.climb(direction);
     }
+    // Free variables can alternate in sign from class to class: no coordinate direction shows it.
+    for (const int period : {1, 2, 3, 4}) {
+        for (int shift = 0; shift < period; ++shift) {
+            Eigen::VectorXd direction(n);
+            for (Eigen::Index j = 0; j < n; ++j) {
+                const bool positive = set.reduction.bounded[static_cast<std::size_t>(j)] != 0 ||
+                                      (j + shift) / period % 2 == 0;
+                direction[j] = positive ? 1.0 : -1.0;
+            }
+            climber.climb(direction);
+            climber.climb(-direction);
+        }
+    }
     set.vertices = climber.take();
 }
 
