@@ -70,7 +70,7 @@ Axes axes_of(const StoredSweep& sweep) {
     }
     const double margin = spread > 0.0 ? std::max(0.04, 0.06 * spread) : 0.4;
     axes.frequency.lo = std::max(0.0, axes.frequency.lo - margin);
-    axes.frequency.hi += margin;
+    axes.frequency.hi += std::max(margin, 0.12 * spread);  // room for a branch that begins there
     return axes;
 }
 
