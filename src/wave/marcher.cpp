@@ -83,13 +83,23 @@ MarchReport march(const Bar& bar, const Mesh& mesh, const State& initial_state, 
             const double tip = queue.tip();
             const double wave = queue.arriving();
             const double distance_to_wall = std::abs(tip - bar.gap);
-            const bool silent = distance_to_wall <= touch && std::abs(wave) <= silence;
-            if (!silent) {  // a silent step leaves the phase as it is
-                contact =
-                    contact ? !(wave < -silence) : queue.tip_after_free_step() > bar.gap + touch;
+            const double beyond = queue.tip_after_free_step() - bar.gap;
+            // A push at the wall would end farther beyond the wall than it starts from it; the last
+            // step to a touch ends nearer. Near the wall this tells contact from free flight with
+            // the errors of the motion itself as the only tolerance.
+            const bool pushes = beyond > distance_to_wall;
+            const bool at_wall = distance_to_wall <= touch;
+            const bool silent = at_wall && std::abs(wave) <= silence;
+            if (!silent) {  // a silent step keeps the name of its phase
+                if (at_wall) {
+                    contact = pushes;
+                } else {
+                    contact = contact ? !(wave < -silence) : beyond > touch || pushes;
+                }
             }
-            const double force = contact ? queue.contact_force() : 0.0;
-            if (contact) {
+            const bool held = silent ? pushes : contact;
+            const double force = contact && held ? queue.contact_force() : 0.0;
+            if (contact && held) {
                 report.worst_separation = std::max(report.worst_separation, distance_to_wall);
                 report.worst_tension = std::max(report.worst_tension, force);
                 report.largest_force = std::max(report.largest_force, std::abs(force));
@@ -98,7 +108,7 @@ MarchReport march(const Bar& bar, const Mesh& mesh, const State& initial_state, 
                 report.first_period.push_back({tip, force, contact, silent});
                 ++(contact ? report.contact_steps : report.free_steps);
             }
-            if (contact) {
+            if (held) {
                 queue.step_contact();
             } else {
                 queue.step_free();

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
 #include "nsma/wave/dense_wfem.hpp"
+#include "nsma/orbit/backbone.hpp"
 #include "nsma/orbit/conditions.hpp"
 
 namespace {
@@ -134,6 +136,45 @@ TEST(Replay, FourClassesBetweenLeastAndMostEnergy) {
     mixed << 0.1, -0.3, -0.4, -0.4;  // the first contact step pulls: 0.1 against 0.4
     // One rounding of each amplitude.
     EXPECT_NEAR(replay(make_orbit(bar, kernel, mixed)).violations.cond3, 0.25, 1e-14);
+}
+
+/// On mode 1 every beta of the sign of COND3 on the plane of COND2 is an orbit: a simplex. Points
+/// of it with amplitudes over 15 decades push the wall by any small force, let go of it at any
+/// small speed, touch it in flight: none may be lost to a tolerance.
+TEST(Replay, AcceptsEveryPointOfTheFirstModeSimplex) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> decades(0.0, 15.0);
+    int cases = 0;
+    for (const int cells : {6, 8, 12, 20}) {
+        for (const int gap_sign : {1, -1}) {
+            for (const Pattern& pattern : nsma::mode_patterns(1, cells, gap_sign)) {
+                const Kernel kernel = exact_kernel(pattern);
+                const int m = kernel.dimension();
+                const VectorXd row = nsma::contact_row(kernel).cast<double>();
+                for (int trial = 0; trial < m + 20; ++trial) {
+                    VectorXd weight = VectorXd::Zero(m);
+                    if (trial < m) {
+                        weight[trial] = 1.0;  // a vertex
+                    } else {
+                        weight = VectorXd::NullaryExpr(
+                            m, [&](Eigen::Index) { return std::pow(10.0, -decades(random)); });
+                    }
+                    const VectorXd beta = gap_sign * weight.cwiseQuotient(row) / weight.sum();
+                    const Replay verdict =
+                        replay(make_orbit(with_gap(gap_sign), kernel, beta), std::nullopt, 50);
+                    ASSERT_TRUE(verdict.accepted)
+                        << "N " << cells << ", r " << pattern.free_steps << ", p "
+                        << pattern.contact_steps << ", beta " << beta.transpose();
+                    // Nothing but rounding of 2N waves of order |d|.
+                    ASSERT_LT(verdict.march.periodicity_defect, 1e-13);
+                    ASSERT_LT(verdict.violations.worst(), 1e-12);
+                    ++cases;
+                }
+            }
+        }
+    }
+    EXPECT_GT(cases, 1000);
+    RecordProperty("cases", cases);
 }
 
 TEST(Replay, AmplitudesWithNoForceAreNotDividedByNoise) {

@@ -8,11 +8,11 @@ namespace nsma {
 
 /// Tolerances with which the marcher decides ties. Both are relative, so that no unit matters.
 struct MarchOptions {
-    /// A free step may end this far beyond the wall and still count as a touch; relative to
-    /// dt * sum|b|, a bound on every displacement of the motion.
+    /// The tip this near to the wall is at the wall, and a free step from farther away may end this
+    /// far beyond it; relative to dt * sum|b|, a bound on every displacement of the motion.
     double touch_tolerance = 1e-9;
-    /// A wave at the wall below this is silent (no force): the phase is then left as it is;
-    /// relative to max|b|.
+    /// A wave at the wall up to this is silent (no force): the phase keeps its name; relative to
+    /// max|b|. Away from the wall contact ends beyond this tension.
     double silent_tolerance = 1e-9;
 };
 
@@ -43,11 +43,12 @@ struct MarchReport {
 };
 
 /// Marches the unilateral contact problem from Q0 with floating boundary conditions: contact
-/// begins when a free step would penetrate the wall (beyond the touch tolerance) and ends when
-/// the contact force would be tensile (beyond the silent tolerance). It knows nothing of
-/// patterns, kernels or programs: it is the judge of their answers. O(1) a step.
-/// Source: [1] p. 1 (floating boundary conditions). Throws std::invalid_argument on a bad size,
-/// NaN, period_steps < 1 or periods < 1.
+/// begins when a free step would penetrate the wall and ends when the contact force would be
+/// tensile. At the wall (within the touch tolerance) a step is contact if it would end farther
+/// beyond the wall than it starts from it; a silent step keeps the name of its phase and moves
+/// likewise. Knows nothing of patterns, kernels or programs: it is the judge of their answers.
+/// O(1) a step. Source: [1] p. 1 (floating boundary conditions). Throws std::invalid_argument on
+/// a bad size, NaN, period_steps < 1, periods < 1 or a negative tolerance.
 [[nodiscard]] MarchReport march(const Bar& bar, const Mesh& mesh, const State& initial_state,
                                 int period_steps, int periods = 1, const MarchOptions& options = {});
 
