@@ -117,6 +117,8 @@ Eigen::VectorXd cone_direction(const Reduction& reduction) {
 struct Projection {
     Eigen::VectorXd rho;
     bool converged = false;
+    std::vector<int> rows;
+    std::vector<int> zeros;
 };
 
 // Projection of delta * contact_row on the cone {rows gamma <= 0, gamma_bounded >= 0}: what is
@@ -136,11 +138,18 @@ Projection project_contact_row(const Reduction& reduction) {
     }
     const Eigen::VectorXd target = reduction.gap_sign * reduction.contact_row.cast<double>();
     NonnegativeSolution solution = nonnegative_least_squares(normals, target);
-    // Bounds at equality hold exactly, not to rounding.
+    Projection projection{std::move(solution.residual), solution.converged, {}, {}};
     for (const int k : solution.support) {
-        if (k >= count) solution.residual[bounded[static_cast<std::size_t>(k - count)]] = 0.0;
+        if (k < count) {
+            projection.rows.push_back(k);
+            continue;
+        }
+        // Bounds at equality hold exactly, not to rounding.
+        const auto column = bounded[static_cast<std::size_t>(k - count)];
+        projection.zeros.push_back(static_cast<int>(column));
+        projection.rho[column] = 0.0;
     }
-    return {std::move(solution.residual), solution.converged};
+    return projection;
 }
 
 // Climbs |gamma|^2 over P by linear programs: each step maximises the linearisation, which for a
@@ -272,6 +281,8 @@ AdmissibleSet admissible_set(Reduction reduction, const AdmissibleOptions& optio
 
     const Eigen::VectorXd target = data.contact_row.cast<double>();
     const Projection projection = project_contact_row(data);
+    set.projection_rows = projection.rows;
+    set.projection_zeros = projection.zeros;
     const bool projected_empty = projection.rho.norm() <= projection_tolerance * target.norm();
     LinearSolver solver(cone_program(data, data.gap_sign, no_bound));
     const LinearSolution feasible =

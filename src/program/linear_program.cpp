@@ -79,6 +79,10 @@ void LinearSolver::set_bounds(Eigen::Index variable, double lower, double upper)
                                              clp_bound(upper));
 }
 
+void LinearSolver::set_row_bounds(Eigen::Index row, double lower, double upper) {
+    implementation_->simplex.setRowBounds(static_cast<int>(row), clp_bound(lower), clp_bound(upper));
+}
+
 LinearSolution LinearSolver::minimise(const Eigen::VectorXd& cost) {
     auto& simplex = implementation_->simplex;
     expect_size("cost", implementation_->variables, cost.size());

@@ -25,6 +25,10 @@ struct AdmissibleSet {
     std::vector<Eigen::VectorXd> vertices;
     /// A direction along which P is unbounded; empty size when there is none.
     Eigen::VectorXd ray;
+    /// Active set of the projection that decided: kept rows with a positive multiplier, and
+    /// bounded columns held at zero. What prove() repeats in fractions.
+    std::vector<int> projection_rows;
+    std::vector<int> projection_zeros;
     /// Dimension of the smallest flat known to hold P: n minus the rank of COND2.
     int flat_dimension = 0;
 

@@ -43,6 +43,7 @@ public:
 
     /// Replaces the bounds of one variable; keeps the basis.
     void set_bounds(Eigen::Index variable, double lower, double upper);
+    void set_row_bounds(Eigen::Index row, double lower, double upper);
 
 private:
     struct Implementation;

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+namespace nsma {
+
+/// Exact numbers of the proofs. All data of a pattern are small integers, so every proof can be
+/// checked without rounding.
+using Integer = boost::multiprecision::cpp_int;
+using Rational = boost::multiprecision::cpp_rational;
+
+/// Sparse vector: (index, value) with increasing index.
+using RationalVector = std::vector<std::pair<int, Rational>>;
+
+/// "12/11", "-3"; the inverse of parse_rational.
+[[nodiscard]] std::string to_string(const Rational& value);
+
+/// Reads an optional sign, digits and optionally "/digits" (not zero); absent on anything else
+/// or on more than `digit_limit` digits.
+[[nodiscard]] std::optional<Rational> parse_rational(const std::string& text,
+                                                     std::size_t digit_limit = 20'000);
+
+/// Nearest double; overflows to infinity.
+[[nodiscard]] double to_double(const Rational& value);
+
+/// The exact value of a finite double.
+[[nodiscard]] Rational exact(double value);
+
+/// Solves a x = b exactly for a of full column rank, rows >= columns (row-major). Absent when
+/// the rank is deficient or the system has no solution. Fraction-free elimination.
+[[nodiscard]] std::optional<std::vector<Rational>> solve_exactly(
+    std::vector<std::vector<Integer>> a, std::vector<Integer> b);
+
+}  // namespace nsma

@@ -1,0 +1,158 @@
+#include "form_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace nsma {
+namespace {
+
+// Simplex values below this are nonbasic; data are small integers and CLP works to 1e-9.
+constexpr double basis_tolerance = 1e-7;
+
+// The dual as a program over (y >= 0, nu free): rows' y + contact nu >= form on bounded columns,
+// = form on free ones; minimise nu delta.
+LinearProgram dual_program(const Reduction& reduction) {
+    const auto n = static_cast<Eigen::Index>(reduction.variables());
+    const auto count = reduction.rows.rows();
+    LinearProgram program;
+    program.rows.resize(n, count + 1);
+    program.rows.leftCols(count) = reduction.rows.cast<double>().transpose();
+    program.rows.col(count) = reduction.contact_row.cast<double>();
+    program.row_lower = Eigen::VectorXd::Zero(n);
+    program.row_upper = Eigen::VectorXd::Constant(n, no_bound);
+    program.lower = Eigen::VectorXd::Zero(count + 1);
+    program.lower[count] = -no_bound;
+    program.upper = Eigen::VectorXd::Constant(count + 1, no_bound);
+    return program;
+}
+
+}  // namespace
+
+RationalVector sparse(const std::vector<Rational>& dense) {
+    RationalVector result;
+    for (std::size_t i = 0; i < dense.size(); ++i) {
+        if (dense[i] != 0) result.emplace_back(static_cast<int>(i), dense[i]);
+    }
+    return result;
+}
+
+std::vector<int> partial_sum_row(const Kernel& kernel, int step) {
+    std::vector<int> row(static_cast<std::size_t>(kernel.dimension()), 0);
+    for (int k = 0; k < step; ++k) {
+        const int column = kernel.column(k);
+        if (column >= 0) row[static_cast<std::size_t>(column)] += kernel.sign[static_cast<std::size_t>(k)];
+    }
+    return row;
+}
+
+FormBounds::FormBounds(const Kernel& kernel, const Reduction& reduction)
+    : kernel_(kernel), reduction_(reduction), dual_(dual_program(reduction)) {
+    const Eigen::VectorXi row = contact_row(kernel);
+    contact_.assign(row.data(), row.data() + row.size());
+    const Conditions terms = conditions(kernel, reduction.gap_sign);
+    for (const auto& zero : reduction.forced) {
+        const auto sign = terms.bound_of[static_cast<std::size_t>(zero.column)];
+        forced_flip_.push_back(sign == Conditions::Sign::nonpositive ? -1 : 1);
+    }
+}
+
+std::vector<Rational> FormBounds::unreduced(const std::vector<Rational>& form) const {
+    std::vector<Rational> result(static_cast<std::size_t>(reduction_.kernel_dimension));
+    for (std::size_t j = 0; j < form.size(); ++j) {
+        result[static_cast<std::size_t>(reduction_.column[j])] = reduction_.flip[j] * form[j];
+    }
+    return result;
+}
+
+void FormBounds::cover_forced(const std::vector<Rational>& form, RowCombination& combination) const {
+    if (reduction_.forced.empty()) return;
+    const auto m = static_cast<std::size_t>(reduction_.kernel_dimension);
+    std::vector<Rational> rest = form;
+    for (std::size_t c = 0; c < m; ++c) rest[c] -= combination.contact * contact_[c];
+    std::map<int, Rational> rows(combination.rows.begin(), combination.rows.end());
+    for (const auto& [step, y] : rows) {
+        const auto row = partial_sum_row(kernel_, step);
+        for (std::size_t c = 0; c < m; ++c) {
+            if (row[c] != 0) rest[c] -= y * row[c];
+        }
+    }
+    // In reverse: a row may hold anything in columns that were forced before it.
+    for (std::size_t i = reduction_.forced.size(); i-- > 0;) {
+        const auto& zero = reduction_.forced[i];
+        const auto c = static_cast<std::size_t>(zero.column);
+        const Rational excess = forced_flip_[i] * rest[c];
+        if (excess <= 0) continue;
+        const auto row = partial_sum_row(kernel_, zero.step);
+        const Rational times = excess / (forced_flip_[i] * row[c]);
+        rows[zero.step] += times;
+        for (std::size_t j = 0; j < m; ++j) {
+            if (row[j] != 0) rest[j] -= times * row[j];
+        }
+    }
+    combination.rows.clear();
+    for (auto& [step, y] : rows) {
+        if (y != 0) combination.rows.emplace_back(step, std::move(y));
+    }
+}
+
+std::optional<FormBound> FormBounds::bound(const std::vector<Rational>& form) {
+    const auto n = static_cast<Eigen::Index>(reduction_.variables());
+    const auto count = reduction_.rows.rows();
+    double scale = 0;
+    for (Eigen::Index j = 0; j < n; ++j) {
+        const double value = to_double(form[static_cast<std::size_t>(j)]);
+        scale = std::max(scale, std::abs(value));
+    }
+    if (scale == 0) scale = 1;
+    for (Eigen::Index j = 0; j < n; ++j) {
+        const double value = to_double(form[static_cast<std::size_t>(j)]) / scale;
+        const bool bounded = reduction_.bounded[static_cast<std::size_t>(j)] != 0;
+        dual_.set_row_bounds(j, value, bounded ? no_bound : value);
+    }
+    Eigen::VectorXd cost = Eigen::VectorXd::Zero(count + 1);
+    cost[count] = reduction_.gap_sign;
+    const LinearSolution solution = dual_.minimise(cost);
+    if (solution.status != LinearStatus::optimal) return std::nullopt;
+
+    // The same vertex in fractions: unknowns are the basic multipliers, equations the tight columns.
+    std::vector<Eigen::Index> support;
+    for (Eigen::Index i = 0; i < count; ++i) {
+        if (solution.x[i] > basis_tolerance) support.push_back(i);
+    }
+    const bool contact = std::abs(solution.x[count]) > basis_tolerance;
+    if (contact) support.push_back(count);
+    Integer common = 1;
+    for (const auto& value : form) common = lcm(common, denominator(value));
+    std::vector<std::vector<Integer>> a;
+    std::vector<Integer> b;
+    for (Eigen::Index j = 0; j < n; ++j) {
+        double covered = 0;
+        for (const auto i : support) {
+            covered += solution.x[i] * (i == count ? reduction_.contact_row[j] : reduction_.rows(i, j));
+        }
+        const auto& wanted = form[static_cast<std::size_t>(j)];
+        if (std::abs(covered - to_double(wanted) / scale) > basis_tolerance) continue;
+        std::vector<Integer> row;
+        for (const auto i : support) row.emplace_back(i == count ? reduction_.contact_row[j] : reduction_.rows(i, j));
+        a.push_back(std::move(row));
+        b.push_back(numerator(wanted) * (common / denominator(wanted)));
+    }
+    const auto solved = solve_exactly(std::move(a), std::move(b));
+    if (!solved || solved->size() != support.size()) return std::nullopt;
+    FormBound result;
+    const auto full = unreduced(form);
+    result.form = sparse(full);
+    for (std::size_t k = 0; k < support.size(); ++k) {
+        Rational value = (*solved)[k] / common;
+        if (support[k] == count) {
+            result.proof.contact = std::move(value);
+        } else if (value != 0) {
+            result.proof.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(support[k])], std::move(value));
+        }
+    }
+    cover_forced(full, result.proof);
+    return result;
+}
+
+}  // namespace nsma

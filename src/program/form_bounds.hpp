@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "nsma/program/certificate.hpp"
+#include "nsma/program/linear_program.hpp"
+#include "nsma/program/reduction.hpp"
+
+namespace nsma {
+
+/// Exact bounds of linear forms over the admissible set, with their proofs in the terms of the
+/// unreduced conditions.
+class FormBounds {
+public:
+    FormBounds(const Kernel& kernel, const Reduction& reduction);
+
+    /// The least upper bound of form . gamma (integers, size n) with exact multipliers, or
+    /// absent where the linear program or its exact repetition fails.
+    [[nodiscard]] std::optional<FormBound> bound(const std::vector<Rational>& form);
+
+    /// Adds multiples of the rows that forced columns to zero until the combination dominates
+    /// `form` (over all columns of beta) on those columns too.
+    void cover_forced(const std::vector<Rational>& form, RowCombination& combination) const;
+
+    /// form over the columns of beta from a form over the reduced variables, and back to sparse.
+    [[nodiscard]] std::vector<Rational> unreduced(const std::vector<Rational>& form) const;
+
+private:
+    const Kernel& kernel_;
+    const Reduction& reduction_;
+    std::vector<int> contact_;        // w over all columns of beta
+    std::vector<int> forced_flip_;    // flip of each forced zero, in order
+    LinearSolver dual_;
+};
+
+[[nodiscard]] RationalVector sparse(const std::vector<Rational>& dense);
+
+/// Integer row sum_{k<step} eps_k e_{column(k)} over all columns of beta.
+[[nodiscard]] std::vector<int> partial_sum_row(const Kernel& kernel, int step);
+
+}  // namespace nsma
