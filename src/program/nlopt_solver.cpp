@@ -137,39 +137,42 @@ SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
     nlopt::opt optimiser(algorithm(method), n);
     Call call{program, &optimiser, nullptr, 0};
 
-    optimiser.set_lower_bounds(
-        std::vector<double>(program.lower.data(), program.lower.data() + n));
-    optimiser.set_upper_bounds(
-        std::vector<double>(program.upper.data(), program.upper.data() + n));
-    optimiser.set_min_objective(objective, &call);
-    if (program.inequalities.rows() > 0) {
-        const std::vector<double> tolerance(static_cast<std::size_t>(program.inequalities.rows()),
-                                            options.tolerance);
-        optimiser.add_inequality_mconstraint(inequalities, &call, tolerance);
-    }
-    const auto equality_count = static_cast<std::size_t>(program.equalities.rows()) +
-                                (program.sphere_variables > 0 ? 1U : 0U);
-    if (equality_count > 0) {
-        optimiser.add_equality_mconstraint(equalities, &call,
-                                           std::vector<double>(equality_count, options.tolerance));
-    }
-    optimiser.set_xtol_rel(options.tolerance);  // COBYLA without it never returns
-    optimiser.set_ftol_rel(options.tolerance * 1e-2);
-    optimiser.set_maxeval(10 * options.max_iterations);
-    optimiser.set_maxtime(options.time_limit);
-    if (method == NloptMethod::auglag_lbfgs) {
-        nlopt::opt local(nlopt::LD_LBFGS, n);  // AUGLAG without a local optimiser crashes
-        local.set_xtol_rel(options.tolerance);
-        local.set_ftol_rel(options.tolerance * 1e-2);
-        local.set_maxeval(10 * options.max_iterations);
-        optimiser.set_local_optimizer(local);
-    }
+    const auto set_up = [&] {
+        optimiser.set_lower_bounds(
+            std::vector<double>(program.lower.data(), program.lower.data() + n));
+        optimiser.set_upper_bounds(
+            std::vector<double>(program.upper.data(), program.upper.data() + n));
+        optimiser.set_min_objective(objective, &call);
+        if (program.inequalities.rows() > 0) {
+            const std::vector<double> tolerance(static_cast<std::size_t>(program.inequalities.rows()),
+                                                options.tolerance);
+            optimiser.add_inequality_mconstraint(inequalities, &call, tolerance);
+        }
+        const auto equality_count = static_cast<std::size_t>(program.equalities.rows()) +
+                                    (program.sphere_variables > 0 ? 1U : 0U);
+        if (equality_count > 0) {
+            optimiser.add_equality_mconstraint(equalities, &call,
+                                               std::vector<double>(equality_count, options.tolerance));
+        }
+        optimiser.set_xtol_rel(options.tolerance);  // COBYLA without it never returns
+        optimiser.set_ftol_rel(options.tolerance * 1e-2);
+        optimiser.set_maxeval(10 * options.max_iterations);
+        optimiser.set_maxtime(options.time_limit);
+        if (method == NloptMethod::auglag_lbfgs) {
+            nlopt::opt local(nlopt::LD_LBFGS, n);  // AUGLAG without a local optimiser crashes
+            local.set_xtol_rel(options.tolerance);
+            local.set_ftol_rel(options.tolerance * 1e-2);
+            local.set_maxeval(10 * options.max_iterations);
+            optimiser.set_local_optimizer(local);
+        }
+    };
 
     SolverOutcome outcome;
     std::vector<double> x(start.data(), start.data() + n);
     // Rounding may leave a start outside its bounds by one unit, which NLopt refuses.
     for (unsigned j = 0; j < n; ++j) x[j] = std::clamp(x[j], program.lower[j], program.upper[j]);
     try {
+        set_up();  // NLopt refuses more equalities than unknowns here already
         double value = 0;
         outcome.status = result_name(optimiser.optimize(x, value));
     } catch (const nlopt::roundoff_limited&) {

@@ -13,6 +13,7 @@ namespace nsma {
 namespace {
 
 constexpr int halvings_limit = 40;
+constexpr double objective_rounding = 1e-15;  // relative to 1 + |f|: a few units in the last place
 constexpr double rank_tolerance = 1e-11;  // rows are scaled to order one
 
 enum class Kind { inequality, lower, upper };
@@ -310,7 +311,8 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
         std::vector<Row> working;
         for (const auto& row : active) {
             const double rate = boundary.normal(row).dot(order.direction);
-            if (rate >= -1e-9 * order.direction.norm()) working.push_back(row);
+            const double rounding = 1e-9 * order.direction.norm() + 1e-14 * gradient_scale;
+            if (rate >= -rounding) working.push_back(row);
         }
         const Eigen::MatrixXd basis = null_space(boundary.flat(working), n);
         bool moved = false;
@@ -328,7 +330,16 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
                 if (boundary.retract(null_space(boundary.flat(rows), n), x) &&
                     program.violation(x) <= options.feasibility) {
                     const double objective = program.objective(x);
-                    if (objective < result.objective) {
+                    // Closer than the root of rounding to an optimum the objective shows no
+                    // progress: there a full Newton step is judged by what it leaves of the slope.
+                    const auto slope_halved = [&] {
+                        return newton && halving == 0 &&
+                               objective <= result.objective +
+                                                objective_rounding * (1.0 + std::abs(result.objective)) &&
+                               first_order(program, boundary, boundary.active(x, options.activity), x)
+                                       .direction.norm() <= 0.5 * order.direction.norm();
+                    };
+                    if (objective < result.objective || slope_halved()) {
                         moved = true;
                         result.x = std::move(x);
                         result.objective = objective;

@@ -40,7 +40,7 @@ struct PolishOptions {
 
 /// Active-set descent from a feasible point: Newton steps on the flat of the active rows cut
 /// with the sphere, blocked by the other rows, until the projection of -gradient on the tangent
-/// cone vanishes. The objective never rises. `start` must be feasible to 1e-9.
+/// cone vanishes. The objective never rises, rounding aside. `start` must be feasible to 1e-9.
 [[nodiscard]] Polished polish(const Program& program, const Eigen::VectorXd& start,
                               const PolishOptions& options = {});
 
