@@ -97,11 +97,10 @@ inline Case convex() {
     return {"convex", program, Vector3d(1, 1, 0.5), 1.25};
 }
 
-/// x = 2 on the unit sphere.
+/// x, y, z >= 0.7 on the unit sphere: at least 1.47 - 1 outside.
 inline Program infeasible() {
     Program program = unit_sphere({0, 1, 0});
-    program.equalities = row({1, 0, 0});
-    program.equality_values = VectorXd::Constant(1, 2);
+    program.lower.setConstant(0.7);
     return program;
 }
 
