@@ -81,7 +81,8 @@ int run(const OrbitArguments& arguments, const std::atomic<bool>&) {
     if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     switch (answer.verdict) {
         case Verdict::admissible: break;
-        case Verdict::failed: return exit_solver;
+        case Verdict::failed:
+        case Verdict::undecided: return exit_solver;
         default: return exit_inadmissible;
     }
     switch (answer.agreement) {

@@ -8,6 +8,7 @@ std::string_view name(Verdict verdict) {
         case Verdict::inadmissible: return "inadmissible";
         case Verdict::below: return "below";
         case Verdict::above: return "above";
+        case Verdict::undecided: return "undecided";
         case Verdict::admissible: return "admissible";
         case Verdict::failed: return "failed";
     }

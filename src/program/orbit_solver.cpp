@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "nsma/program/conic_bound.hpp"
 #include "nsma/program/level_points.hpp"
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/polish.hpp"
@@ -102,7 +103,8 @@ public:
         answer_.kernel_dimension = problem_.kernel.dimension();
         answer_.verdict = problem_.verdict;
         answer_.reason = problem_.set.reason;
-        answer_.interval = problem_.set.interval();
+        answer_.interval = problem_.interval;
+        answer_.verdict_proved = problem_.proof.verdict_proved;
         answer_.level = request_.level;
         answer_.objective = request_.objective;
         if (problem_.verdict == Verdict::admissible && level_verdict()) {
@@ -127,13 +129,14 @@ private:
             answer_.reason = "level below the least energy of the pattern";
             return false;
         }
-        const auto& greatest = answer_.interval.greatest;
-        if (greatest && level > *greatest * (1 + options_.level_tolerance)) {
-            answer_.verdict = Verdict::above;
-            answer_.reason = "level above the greatest energy attained by the vertices of the pattern";
-            return false;
-        }
-        return true;
+        const auto& [least, greatest, bound, unbounded, least_exact, greatest_exact] = answer_.interval;
+        if (unbounded || (greatest && level <= *greatest * (1 + options_.level_tolerance))) return true;
+        answer_.verdict_proved = bound.has_value() && level > *bound * (1 + options_.level_tolerance);
+        answer_.verdict = answer_.verdict_proved ? Verdict::above : Verdict::undecided;
+        answer_.reason = answer_.verdict_proved
+                             ? "level above the greatest energy of the pattern"
+                             : "level above the greatest energy attained, below the proved bound";
+        return false;
     }
 
     void find() {
@@ -212,6 +215,9 @@ private:
         if (best == nullptr) return false;
         answer_.agreement = Agreement::not_needed;
         accept(*best);
+        // A point or the whole line was looked at; of the vertices at the greatest energy only
+        // those known were.
+        if (best->method != "vertex") answer_.optimality = Optimality{value, 0.0, true, 0.0, 0};
         return true;
     }
 
@@ -236,6 +242,7 @@ private:
         SolverRun run;
         bool usable = false;
         bool global = false;
+        Optimality optimality;
     };
 
     void optimise() {
@@ -291,6 +298,7 @@ private:
             ask(ipopt, nlopt, "nlopt-slsqp");
         }
 
+        settle(program, level, with_ipopt ? &ipopt : nullptr, with_nlopt ? &nlopt : nullptr, next, others);
         compare(with_ipopt, ipopt, with_nlopt, nlopt);
         if (with_ipopt && !ipopt.run.name.empty()) answer_.solvers.push_back(ipopt.run);
         if (with_nlopt && !nlopt.run.name.empty()) answer_.solvers.push_back(nlopt.run);
@@ -304,15 +312,56 @@ private:
                          [](const Best* a, const Best* b) { return a->rank < b->rank; });
         for (const Best* best : ranked) {
             accept(best->candidate);
+            answer_.optimality = best->optimality;
             if (answer_.verdict == Verdict::admissible) return;
         }
         // Both failed: the segment still gives an orbit of this pattern at this level.
         if (const auto fallback = start(0)) {
             const Polished polished = polish(program.program, program.point(*fallback));
             accept({polished.feasible ? program.gamma(polished.x) : *fallback, "segment"});
+            answer_.optimality = optimality_of(program, polished);
             if (answer_.verdict == Verdict::admissible) {
                 answer_.reason = "no solver answer was usable: polished segment point";
             }
+        }
+    }
+
+    // Where the Lagrangian leaves a gap: bounds the objective by relaxations, whose solutions are
+    // starts that find better optima; the solvers are then asked about those.
+    void settle(const OrbitProgram& program, const std::optional<LevelPoints>& level, Best* ipopt,
+                Best* nlopt, int& next, std::vector<SolverRun>& others) {
+        Best* best = ipopt;
+        if (best == nullptr || (nlopt != nullptr && nlopt->usable && nlopt->rank < best->rank)) best = nlopt;
+        if (options_.bound_nodes < 1 || !best->usable || best->global || !level) return;
+        std::optional<Eigen::VectorXd> better;
+        double objective = program.program.objective(program.point(best->candidate.gamma));
+        ConicBoundOptions bounding;
+        bounding.node_limit = options_.bound_nodes;
+        bounding.improve = [&](const Eigen::VectorXd& x) {
+            if (const auto near = restored(program, problem_.set, &*level, x)) {
+                const Polished polished = polish(program.program, program.point(*near));
+                if (polished.feasible && polished.objective < objective * (1 - options_.agreement_tolerance)) {
+                    objective = polished.objective;
+                    better = program.gamma(polished.x);
+                }
+            }
+            return objective;
+        };
+        const ConicBound bound = conic_bound(program.program, objective, bounding);
+        if (better) {
+            for (Best* one : {ipopt, nlopt}) {
+                if (one == nullptr) continue;
+                const int number = next++;
+                const auto aside = aside_of(*better, level, level->start(number));
+                if (aside) attempt(program, level, *aside, one == ipopt ? "ipopt" : "nlopt-slsqp", number, *one, others);
+            }
+        }
+        for (Best* one : {ipopt, nlopt}) {
+            if (one == nullptr || !one->usable) continue;
+            one->optimality.nodes = bound.nodes;
+            const double value = program.program.objective(program.point(one->candidate.gamma));
+            if (bound.value > -infinity) set_bound(program, value, bound.value, one->optimality);
+            one->global = one->optimality.global;
         }
     }
 
@@ -347,9 +396,8 @@ private:
                     trial.usable = true;
                     trial.candidate = {program.gamma(polished.x), solver};
                     trial.rank = rank(trial.candidate.gamma);
-                    trial.global = polished.stationary &&
-                                   polished.objective - polished.lower_bound <=
-                                       options_.agreement_tolerance * std::abs(polished.objective);
+                    trial.optimality = optimality_of(program, polished);
+                    trial.global = trial.optimality.global;
                     run.usable = true;
                     run.objective = objective_value(trial.candidate.gamma);
                 }
@@ -360,6 +408,25 @@ private:
         if (better || best.run.name.empty()) std::swap(best, trial);
         if (!trial.run.name.empty()) others.push_back(trial.run);
         return run.usable;
+    }
+
+    // From the polish alone: its KKT residual and the bound of its Lagrangian.
+    [[nodiscard]] Optimality optimality_of(const OrbitProgram& program, const Polished& polished) const {
+        Optimality result;
+        result.kkt_residual = polished.multipliers.residual;
+        if (polished.stationary && std::isfinite(polished.lower_bound)) {
+            set_bound(program, polished.objective, polished.lower_bound, result);
+        }
+        return result;
+    }
+
+    // `objective` and `bound` in the scale of the program.
+    void set_bound(const OrbitProgram& program, double objective, double bound, Optimality& result) const {
+        // Rounding may put a tight bound above the value it bounds.
+        bound = std::min(bound, objective);
+        if (program.objective_unit > 0) result.lower_bound = bound * program.objective_unit;
+        result.gap = objective != 0 ? (objective - bound) / std::abs(objective) : 0.0;
+        result.global = result.gap <= options_.agreement_tolerance;
     }
 
     [[nodiscard]] static double difference(const Best& a, const Best& b) {
@@ -404,6 +471,7 @@ private:
         answer_.energy = energy_ratio(orbit);
         answer_.objective_value = objective_value(candidate.gamma);
         answer_.classification = classify(orbit);
+        answer_.verdict_proved = judged.accepted;
         if (judged.accepted) {
             answer_.verdict = Verdict::admissible;
         } else {
@@ -432,17 +500,31 @@ private:
 
 }  // namespace
 
-PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const AdmissibleOptions& options) {
+PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const PatternOptions& options) {
     validate(pattern);
     PatternProblem problem;
     problem.kernel = exact_kernel(pattern);
-    problem.set = admissible_set(reduce(conditions(problem.kernel, gap_sign)), options);
+    problem.set = admissible_set(reduce(conditions(problem.kernel, gap_sign)), options.admissible);
     if (problem.kernel.dimension() == 0) {
         problem.verdict = Verdict::trivial;
     } else if (problem.set.status == AdmissibleSet::Status::empty) {
         problem.verdict = Verdict::inadmissible;
     } else if (problem.set.status == AdmissibleSet::Status::nonempty) {
         problem.verdict = Verdict::admissible;
+    }
+    problem.interval = problem.set.interval();
+    if (!options.prove) return problem;
+    problem.proof = prove(problem.kernel, problem.set, options.proof);
+    const auto& certificate = problem.proof.certificate;
+    auto& interval = problem.interval;
+    if (problem.proof.verdict_proved && certificate.energy_least) {
+        interval.least = to_double(*certificate.energy_least);
+        interval.least_exact = to_string(*certificate.energy_least);
+    }
+    if (certificate.energy_attained) interval.greatest = to_double(*certificate.energy_attained);
+    if (certificate.energy_bound) interval.bound = to_double(*certificate.energy_bound);
+    if (certificate.energy_attained && problem.proof.exact_greatest()) {
+        interval.greatest_exact = to_string(*certificate.energy_attained);
     }
     return problem;
 }

@@ -48,6 +48,20 @@ Json violations_json(const std::optional<Replay>& replay) {
     return violations;
 }
 
+// Fractions of the energy unit, null without a proof.
+Json exact_text(const std::string& fraction) {
+    return fraction.empty() ? Json(nullptr) : Json(fraction);
+}
+
+Json optimality_json(const std::optional<Optimality>& optimality) {
+    if (!optimality) return nullptr;
+    return {{"lower_bound", number(optimality->lower_bound)},
+            {"gap", optimality->lower_bound ? number(optimality->gap) : Json(nullptr)},
+            {"global", optimality->global},
+            {"kkt_residual", number(optimality->kkt_residual)},
+            {"nodes", optimality->nodes}};
+}
+
 Json classification_json(const std::optional<Classification>& kind) {
     if (!kind) return nullptr;
     Json object;
@@ -90,6 +104,11 @@ std::string orbit_json(const OrbitAnswer& answer, const Bar& bar, bool with_seco
     json["alpha"] = answer.orbit ? numbers(amplitudes(*answer.orbit)) : Json::array();
     json["violations"] = violations_json(answer.replay);
     json["classification"] = classification_json(answer.classification);
+    json["verdict_proved"] = answer.verdict_proved;
+    json["energy_min_exact"] = exact_text(answer.interval.least_exact);
+    json["energy_max_exact"] = exact_text(answer.interval.greatest_exact);
+    json["energy_bound"] = number(answer.interval.bound);
+    json["optimality"] = optimality_json(answer.optimality);
     json["solvers"] = Json::array();
     for (const SolverRun& run : answer.solvers)
         json["solvers"].push_back(solver_json(run, with_seconds));

@@ -65,6 +65,11 @@ std::string summary_json(const SweepSummary& summary) {
     json["closed_form"] = summary.closed_form;
     json["below"] = summary.below;
     json["above"] = summary.above;
+    json["undecided"] = summary.undecided;
+    json["unproved"] = summary.unproved;
+    json["open_bounds"] = summary.open_bounds;
+    json["global"] = summary.global;
+    json["worst_gap"] = summary.worst_gap;
     json["agreed"] = summary.agreed;
     json["disagreed"] = summary.disagreed;
     json["one_failed"] = summary.one_failed;

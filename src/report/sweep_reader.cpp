@@ -27,7 +27,7 @@ Pattern read_pattern(const CsvTable& table, const Scene& scene) {
 
 Verdict read_verdict(const CsvTable& table) {
     for (const Verdict verdict : {Verdict::trivial, Verdict::inadmissible, Verdict::below,
-                                  Verdict::above, Verdict::admissible, Verdict::failed}) {
+                                  Verdict::above, Verdict::undecided, Verdict::admissible, Verdict::failed}) {
         if (table.text("verdict") == name(verdict)) return verdict;
     }
     table.fail("verdict", "a verdict");

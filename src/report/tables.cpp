@@ -67,14 +67,17 @@ std::string scan_table(const Bar& bar, const std::vector<PatternRecord>& records
 }
 
 std::string patterns_csv_header() {
-    return std::string(scan_columns) + ",energy_min_joule,energy_max_joule,energy_unbounded,reason";
+    return std::string(scan_columns) + ",energy_min_joule,energy_max_joule,energy_unbounded,proved,"
+           "energy_min_exact,energy_max_exact,energy_bound,reason";
 }
 
 std::string patterns_csv_row(const Bar& bar, const PatternRecord& record) {
-    return fmt::format("{},{},{},{},{}", scan_csv_row(bar, record),
-                       csv_number(joule(bar, record.interval.least)),
-                       csv_number(joule(bar, greatest(record.interval))), record.interval.unbounded,
-                       csv_text(record.reason));
+    const EnergyInterval& interval = record.interval;
+    return fmt::format("{},{},{},{},{},{},{},{},{}", scan_csv_row(bar, record),
+                       csv_number(joule(bar, interval.least)),
+                       csv_number(joule(bar, greatest(interval))), interval.unbounded,
+                       record.proved, interval.least_exact, interval.greatest_exact,
+                       csv_number(interval.bound), csv_text(record.reason));
 }
 
 std::string levels_csv_header() {
@@ -85,7 +88,8 @@ std::string levels_csv_header() {
            "cond3,"
            "violation_energy,minimal_period_steps,silent_contact_steps,wall_touches,full_support,"
            "ipopt_status,"
-           "ipopt_objective,nlopt_status,nlopt_objective";
+           "ipopt_objective,nlopt_status,nlopt_objective,verdict_proved,objective_bound,objective_gap,"
+           "global,kkt_residual";
 }
 
 std::string levels_csv_row(const Bar& bar, const OrbitAnswer& answer) {
@@ -124,6 +128,16 @@ std::string levels_csv_row(const Bar& bar, const OrbitAnswer& answer) {
         add(run == nullptr ? std::string() : csv_text(run->status));
         add(run == nullptr || !run->usable ? std::string() : csv_number(run->objective));
     }
+    add(fmt::format("{}", answer.verdict_proved));
+    if (const auto& optimality = answer.optimality) {
+        const bool bounded = optimality->lower_bound.has_value();
+        add(csv_number(optimality->lower_bound));
+        add(bounded ? csv_number(optimality->gap) : std::string());
+        add(fmt::format("{}", optimality->global));
+        add(csv_number(optimality->kkt_residual));
+    } else {
+        row += ",,,,";
+    }
     return row;
 }
 
@@ -160,15 +174,20 @@ std::string summary_table(const SweepSummary& summary) {
     count("  inadmissible", summary.inadmissible);
     count("  admissible", summary.admissible);
     count("  failed", summary.failed_patterns);
+    count("  without an exact proof", summary.unproved);
+    count("  admissible, greatest energy open", summary.open_bounds);
     count("energy levels asked", summary.levels);
     count("  solved", summary.solved);
+    count("    proved the best at their level", summary.global);
     count("    closed form", summary.closed_form);
     count("    solvers agree", summary.agreed);
     count("    solvers at different optima", summary.disagreed);
     count("    one solver failed", summary.one_failed);
     count("  below the pattern's least energy", summary.below);
     count("  above its greatest energy", summary.above);
+    count("  undecided", summary.undecided);
     count("  failed", summary.failed);
+    row("largest gap to the proved optimum", fmt::format("{:.2e}", summary.worst_gap));
     row("worst replayed violation", fmt::format("{:.2e}", summary.worst_violation));
     row("time [s]", fmt::format("{:.2f}", summary.seconds));
     return table;

@@ -10,8 +10,13 @@ PatternRecord pattern_record(const PatternProblem& problem, int gap_sign, double
     record.gap_sign = gap_sign;
     record.kernel_dimension = problem.kernel.dimension();
     record.verdict = problem.verdict;
-    record.interval = problem.set.interval();
+    record.interval = problem.interval;
+    record.proved = problem.proof.verdict_proved;
     record.reason = problem.set.reason;
+    if (!problem.proof.unproved.empty()) {
+        if (!record.reason.empty()) record.reason += "; ";
+        record.reason += "unproved: " + problem.proof.unproved;
+    }
     record.seconds = seconds;
     return record;
 }

@@ -14,6 +14,12 @@ bool extreme(Objective objective) {
 
 void count(SweepSummary& summary, const PatternRecord& record) {
     ++summary.patterns;
+    if (!record.proved) ++summary.unproved;
+    const auto& interval = record.interval;
+    if (record.verdict == Verdict::admissible && record.gap_sign != 0 && !interval.unbounded &&
+        interval.greatest_exact.empty()) {
+        ++summary.open_bounds;
+    }
     switch (record.verdict) {
         case Verdict::trivial: ++summary.trivial; break;
         case Verdict::inadmissible: ++summary.inadmissible; break;
@@ -33,8 +39,15 @@ void count(SweepSummary& summary, const OrbitAnswer& answer, bool asked) {
     if (!asked) return;
     if (answer.verdict == Verdict::below) ++summary.below;
     if (answer.verdict == Verdict::above) ++summary.above;
+    if (answer.verdict == Verdict::undecided) ++summary.undecided;
     if (!solved) return;
     ++summary.solved;
+    if (answer.optimality && answer.optimality->global) {
+        ++summary.global;
+    } else {
+        const bool bounded = answer.optimality && answer.optimality->lower_bound;
+        summary.worst_gap = std::max(summary.worst_gap, bounded ? answer.optimality->gap : 1.0);
+    }
     switch (answer.agreement) {
         case Agreement::not_needed: ++summary.closed_form; break;
         case Agreement::agree: ++summary.agreed; break;

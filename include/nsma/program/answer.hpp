@@ -19,6 +19,7 @@ enum class Verdict {
     inadmissible,  ///< no orbit of this pattern meets COND1-3
     below,         ///< level below the least energy of the pattern
     above,         ///< level above the greatest energy of the pattern
+    undecided,     ///< level between the greatest energy attained and the proved bound of it
     admissible,    ///< an orbit was found and its replay accepted
     failed         ///< none of the above could be established; the reason says why
 };
@@ -47,11 +48,24 @@ enum class Agreement {
 };
 [[nodiscard]] std::string_view name(Agreement agreement);
 
-/// The interval of attainable energies of a pattern, in units of the bar's energy unit.
+/// The interval of attainable energies of a pattern, in units of the bar's energy unit. With a
+/// proof these are the exact fractions, rounded once.
 struct EnergyInterval {
     std::optional<double> least;     ///< E_min; absent when the pattern is not admissible
     std::optional<double> greatest;  ///< greatest energy attained; absent when unbounded or unknown
+    std::optional<double> bound;     ///< proved upper bound of the energy; absent when there is none
     bool unbounded = false;
+    std::string least_exact;         ///< "12/11"; empty without a proof
+    std::string greatest_exact;
+};
+
+/// How far the kept orbit is known to be the best one. Objective values as reported.
+struct Optimality {
+    std::optional<double> lower_bound;  ///< proved in floating point (weak duality); absent: none
+    double gap = 0;          ///< (objective - lower_bound)/|objective|; meaningless without a bound
+    bool global = false;     ///< gap within the agreement tolerance
+    double kkt_residual = 0; ///< relative, from our own multipliers; 0 for closed forms
+    int nodes = 0;           ///< relaxations solved for the bound; 0: the Lagrangian was enough
 };
 
 /// The answer for one pattern, one objective and, unless the least-energy orbit is asked, one
@@ -63,6 +77,8 @@ struct OrbitAnswer {
     Verdict verdict = Verdict::failed;
     std::string reason;                    ///< one line; empty when there is nothing to say
     EnergyInterval interval;
+    bool verdict_proved = false;           ///< by an exact certificate, or by the replayed orbit
+    std::optional<Optimality> optimality;  ///< of the kept orbit
     std::optional<double> level;           ///< the level asked, in energy units
     Objective objective = Objective::least_shock;
     std::optional<double> objective_value; ///< nondimensional, of the kept orbit

@@ -4,6 +4,7 @@
 
 #include "nsma/program/admissible_set.hpp"
 #include "nsma/program/answer.hpp"
+#include "nsma/program/prove.hpp"
 #include "nsma/program/solver.hpp"
 
 namespace nsma {
@@ -12,13 +13,21 @@ namespace nsma {
 struct PatternProblem {
     Kernel kernel;
     AdmissibleSet set;
+    Proof proof;                        ///< empty when proofs were not asked for
     Verdict verdict = Verdict::failed;  ///< trivial, inadmissible, admissible or failed
+    EnergyInterval interval;            ///< exact where proved
+};
+
+struct PatternOptions {
+    AdmissibleOptions admissible;
+    bool prove = true;  ///< certify the verdict and the energy interval in exact arithmetic
+    ProveOptions proof;
 };
 
 /// Decides one pattern for a gap of the given sign. Throws std::invalid_argument on a bad
 /// pattern.
 [[nodiscard]] PatternProblem pattern_problem(const Pattern& pattern, int gap_sign,
-                                             const AdmissibleOptions& options = {});
+                                             const PatternOptions& options = {});
 
 enum class SolverChoice { ipopt, nlopt, both };
 
@@ -28,6 +37,7 @@ struct OrbitSolverOptions {
     double agreement_tolerance = 1e-6;  ///< relative difference of objectives that still agree
     double raw_violation = 1e-4;        ///< a raw answer further out is a failure of its solver
     double level_tolerance = 1e-15;     ///< relative; a level this close to an end is the end
+    int bound_nodes = 8;                ///< relaxations spent on the bound of one answer; 0: none
     SolverOptions solver;
 };
 

@@ -14,7 +14,8 @@ struct PatternRecord {
     int kernel_dimension = 0;
     Verdict verdict = Verdict::failed;  ///< trivial, inadmissible, admissible or failed
     EnergyInterval interval;
-    std::string reason;                 ///< what decided: e.g. "no live class with x_0 > 0"
+    bool proved = false;                ///< the verdict and E_min by an exact certificate
+    std::string reason;                 ///< what decided, and what could not be proved
     double seconds = 0;
 };
 
@@ -25,11 +26,16 @@ struct SweepSummary {
     int inadmissible = 0;
     int admissible = 0;
     int failed_patterns = 0;
+    int unproved = 0;      ///< patterns whose verdict has no exact proof
+    int open_bounds = 0;   ///< admissible patterns whose greatest energy is not exact
     int levels = 0;        ///< pattern-level pairs asked, closed-form least-energy orbits aside
     int solved = 0;        ///< admissible answers among them
     int closed_form = 0;   ///< solved without a solver
     int below = 0;
     int above = 0;
+    int undecided = 0;     ///< levels between the greatest energy attained and its proved bound
+    int global = 0;        ///< solved ones proved to be the best orbit at their level
+    double worst_gap = 0;  ///< largest relative gap to the proved bound among the other solved ones
     int agreed = 0;
     int disagreed = 0;     ///< usable answers of both solvers at different optima
     int one_failed = 0;    ///< one of the two solvers failed; the other's answer was kept

@@ -1,0 +1,287 @@
+#include "nsma/program/conic_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+namespace nsma {
+namespace {
+
+constexpr double over_relaxation = 1.6;
+constexpr int check_every = 20;
+constexpr int stall_every = 200;
+constexpr double stall_tolerance = 0.02;
+
+// The program in homogeneous form over the unit sphere: minimise x' C x.
+struct Homogeneous {
+    Eigen::MatrixXd cost;
+    Eigen::VectorXd contact;     // a; size 0 without COND2
+    double contact_square = 0;   // e^2
+    Eigen::MatrixXd generators;  // V: V x >= 0
+    bool valid = false;
+};
+
+Homogeneous homogenise(const Program& program) {
+    Homogeneous form;
+    const auto n = program.variables();
+    if (program.sphere_variables != n || program.equalities.rows() > 1) return form;
+    if (program.inequality_values.size() > 0 && !program.inequality_values.isZero()) return form;
+    form.cost = 0.5 * Eigen::MatrixXd(program.hessian);
+    const bool linear = !program.gradient.isZero();
+    if (program.equalities.rows() == 1) {
+        form.contact = Eigen::MatrixXd(program.equalities).row(0).transpose();
+        const double e = program.equality_values[0];
+        form.contact_square = e * e;
+        if (linear) {
+            if (e == 0) return form;
+            form.cost += (program.gradient * form.contact.transpose() +
+                          form.contact * program.gradient.transpose()) / (2.0 * e);
+        }
+    } else if (linear) {
+        return form;
+    }
+    // The constant rides on the sphere.
+    form.cost.diagonal().array() += program.constant;
+
+    std::vector<Eigen::Index> bounded;
+    for (Eigen::Index j = 0; j < n; ++j) {
+        if (program.upper[j] < no_bound) return form;
+        if (program.lower[j] == 0) bounded.push_back(j);
+    }
+    const auto count = program.inequalities.rows();
+    form.generators = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(bounded.size()) + count, n);
+    for (std::size_t k = 0; k < bounded.size(); ++k) {
+        form.generators(static_cast<Eigen::Index>(k), bounded[k]) = 1.0;
+    }
+    form.generators.bottomRows(count) = -Eigen::MatrixXd(program.inequalities);
+    form.valid = true;
+    return form;
+}
+
+class Splitting {
+public:
+    explicit Splitting(const Homogeneous& form) : form_(form), n_(form.cost.rows()) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(form.generators.transpose() * form.generators);
+        basis_ = gram.eigenvectors();
+        const Eigen::VectorXd values = gram.eigenvalues().cwiseMax(0.0);
+        weights_ = (1.0 + (values * values.transpose()).array()).inverse().matrix();
+        contact_matrix_ = form.contact.size() > 0 ? Eigen::MatrixXd(form.contact * form.contact.transpose())
+                                                  : Eigen::MatrixXd::Zero(n_, n_);
+        solved_identity_ = solve(Eigen::MatrixXd::Identity(n_, n_));
+        solved_contact_ = solve(contact_matrix_);
+        solved_cost_ = solve(form.cost);
+        const auto p = form.generators.rows();
+        psd_ = Eigen::MatrixXd::Identity(n_, n_) / static_cast<double>(n_);
+        nonnegative_ = (form.generators * psd_ * form.generators.transpose()).cwiseMax(0.0);
+        psd_dual_ = Eigen::MatrixXd::Zero(n_, n_);
+        nonnegative_dual_ = Eigen::MatrixXd::Zero(p, p);
+        rho_ = std::max(form.cost.norm(), 1e-12);
+    }
+
+    void iterate() {
+        const auto& v = form_.generators;
+        const Eigen::MatrixXd right =
+            psd_ - psd_dual_ + v.transpose() * (nonnegative_ - nonnegative_dual_) * v;
+        const Eigen::MatrixXd free = solve(right) - solved_cost_ / rho_;
+        fit_equalities(free);
+        const Eigen::MatrixXd z = free - (mu_ * solved_identity_ + nu_ * solved_contact_) / rho_;
+        const Eigen::MatrixXd lifted = v * z * v.transpose();
+
+        const Eigen::MatrixXd psd_mix = over_relaxation * z + (1 - over_relaxation) * psd_;
+        const Eigen::MatrixXd mix = over_relaxation * lifted + (1 - over_relaxation) * nonnegative_;
+        const Eigen::MatrixXd shifted = psd_mix + psd_dual_;
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(shifted);
+        const Eigen::MatrixXd last_psd = psd_;
+        psd_ = spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0.0).asDiagonal() *
+               spectrum.eigenvectors().transpose();
+        psd_dual_ = shifted - psd_;
+        const Eigen::MatrixXd last_nonnegative = nonnegative_;
+        const Eigen::MatrixXd sum = mix + nonnegative_dual_;
+        nonnegative_ = sum.cwiseMax(0.0);
+        nonnegative_dual_ = sum - nonnegative_;
+        primal_ = std::hypot((z - psd_).norm(), (lifted - nonnegative_).norm());
+        dual_ = std::hypot((psd_ - last_psd).norm(), (nonnegative_ - last_nonnegative).norm());
+    }
+
+    // Keeps primal and dual residuals of one size; scaled multipliers follow.
+    void balance() {
+        double factor = 1.0;
+        if (primal_ > 5.0 * dual_) factor = 1.7;
+        if (dual_ > 5.0 * primal_) factor = 1.0 / 1.7;
+        rho_ *= factor;
+        psd_dual_ /= factor;
+        nonnegative_dual_ /= factor;
+    }
+
+    // Mean of the relaxed solution, of which Z is the moment matrix; needs COND2.
+    [[nodiscard]] Eigen::VectorXd mean() const {
+        return psd_ * form_.contact / std::sqrt(form_.contact_square);
+    }
+
+    // Where to cut: with COND2 the relaxed solution is a moment matrix whose mean is Z a/e; the
+    // unknown of largest variance is cut at its mean. Without it, the largest unsigned unknown is
+    // cut at zero. The normal h of the cut h . x = 0; size 0 when nothing is left to cut.
+    [[nodiscard]] Eigen::VectorXd cut(const std::vector<Eigen::Index>& unsigned_unknowns) const {
+        Eigen::VectorXd normal = Eigen::VectorXd::Zero(n_);
+        if (form_.contact_square > 0) {
+            const Eigen::VectorXd mean = psd_ * form_.contact / form_.contact_square;  // over a . x
+            Eigen::Index widest = 0;
+            (psd_.diagonal() - mean.cwiseAbs2() * form_.contact_square).maxCoeff(&widest);
+            normal[widest] = 1.0;
+            normal -= mean[widest] * form_.contact;
+            return normal.normalized();
+        }
+        if (unsigned_unknowns.empty()) return {};
+        normal[*std::max_element(unsigned_unknowns.begin(), unsigned_unknowns.end(), [&](auto i, auto j) {
+            return psd_(i, i) < psd_(j, j);
+        })] = 1.0;
+        return normal;
+    }
+
+    // Objective bound from the multipliers at hand: valid for any of them.
+    [[nodiscard]] double bound() const {
+        const auto& v = form_.generators;
+        const Eigen::MatrixXd products = (-rho_) * nonnegative_dual_.cwiseMin(0.0);
+        const Eigen::MatrixXd fixed = form_.cost - v.transpose() * products * v;
+        const auto value = [&](double nu) {
+            const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(fixed + nu * contact_matrix_,
+                                                                          Eigen::EigenvaluesOnly);
+            const double scale = spectrum.eigenvalues().cwiseAbs().maxCoeff();
+            const double rounding = 1e-14 * scale;  // eigenvalues are good to a few units of n eps
+            return spectrum.eigenvalues()[0] - rounding - nu * form_.contact_square;
+        };
+        if (form_.contact.size() == 0) return value(0);
+        // Concave in nu: a few steps of golden section about the multiplier found.
+        const double width = 0.05 * std::abs(nu_) + 1e-3 * rho_;
+        double lo = nu_ - width;
+        double hi = nu_ + width;
+        constexpr double golden = 0.6180339887498949;
+        double a = hi - golden * (hi - lo);
+        double b = lo + golden * (hi - lo);
+        double at_a = value(a);
+        double at_b = value(b);
+        double best = std::max({value(nu_), at_a, at_b});
+        for (int i = 0; i < 12; ++i) {
+            if (at_a > at_b) {
+                hi = b; b = a; at_b = at_a;
+                a = hi - golden * (hi - lo);
+                at_a = value(a);
+                best = std::max(best, at_a);
+            } else {
+                lo = a; a = b; at_a = at_b;
+                b = lo + golden * (hi - lo);
+                at_b = value(b);
+                best = std::max(best, at_b);
+            }
+        }
+        return best;
+    }
+
+private:
+    // Inverse of Z -> Z + S Z S with S = V'V.
+    [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const {
+        const Eigen::MatrixXd inside = (basis_.transpose() * right * basis_).cwiseProduct(weights_);
+        return basis_ * inside * basis_.transpose();
+    }
+
+    // Multipliers mu, nu with which trace Z = 1 and a' Z a = e^2.
+    void fit_equalities(const Eigen::MatrixXd& free) {
+        const double trace = rho_ * (free.trace() - 1.0);
+        if (form_.contact.size() == 0) {
+            mu_ = trace / solved_identity_.trace();
+            return;
+        }
+        const double contact = rho_ * ((free.cwiseProduct(contact_matrix_)).sum() - form_.contact_square);
+        Eigen::Matrix2d system;
+        system << solved_identity_.trace(), solved_contact_.trace(), solved_contact_.trace(),
+            solved_contact_.cwiseProduct(contact_matrix_).sum();
+        const Eigen::Vector2d solution = system.inverse() * Eigen::Vector2d(trace, contact);
+        mu_ = solution[0];
+        nu_ = solution[1];
+    }
+
+    const Homogeneous& form_;
+    Eigen::Index n_;
+    Eigen::MatrixXd basis_, weights_, contact_matrix_;
+    Eigen::MatrixXd solved_identity_, solved_contact_, solved_cost_;
+    Eigen::MatrixXd psd_, psd_dual_, nonnegative_, nonnegative_dual_;
+    double rho_ = 1;
+    double mu_ = 0;
+    double nu_ = 0;
+    double primal_ = 0;
+    double dual_ = 0;
+};
+
+}  // namespace
+
+ConicBound conic_bound(const Program& program, double target, const ConicBoundOptions& options) {
+    ConicBound result;
+    const Homogeneous root_form = homogenise(program);
+    if (!root_form.valid || program.variables() < 2) return result;
+    const auto wanted = [&] { return target - options.target_tolerance * std::abs(target); };
+
+    struct Node {
+        double bound;
+        int order;
+        Homogeneous form;
+        std::vector<Eigen::Index> unsigned_unknowns;
+        Eigen::VectorXd cut;
+    };
+    const auto solve = [&](Node& node) {
+        Splitting splitting(node.form);
+        double last = -no_bound;
+        for (int i = 0; i < options.max_iterations; i += check_every) {
+            for (int k = 0; k < check_every; ++k) splitting.iterate();
+            result.iterations += check_every;
+            node.bound = std::max(node.bound, splitting.bound());
+            if (node.bound >= wanted()) break;
+            if (i > 0 && i % stall_every == 0) {
+                // A relaxation that has settled short of the target needs a split, not steps.
+                if (node.bound - last <= stall_tolerance * (target - node.bound)) break;
+                last = node.bound;
+            }
+            splitting.balance();
+        }
+        ++result.nodes;
+        if (options.improve && node.form.contact_square > 0) {
+            const double sign = program.equality_values[0] > 0 ? 1.0 : -1.0;
+            target = std::min(target, options.improve(sign * splitting.mean()));
+        }
+        node.cut = splitting.cut(node.unsigned_unknowns);
+    };
+    const auto later = [](const Node& a, const Node& b) {
+        return a.bound != b.bound ? a.bound > b.bound : a.order > b.order;
+    };
+    std::vector<Node> open;
+    open.push_back({-no_bound, 0, root_form, {}, {}});
+    for (Eigen::Index j = 0; j < program.variables(); ++j) {
+        if (program.lower[j] == -no_bound) open.front().unsigned_unknowns.push_back(j);
+    }
+    solve(open.front());
+    double closed = no_bound;  // least bound of the leaves that cannot be split
+    while (!open.empty() && open.front().bound < wanted() && result.nodes + 2 <= options.node_limit) {
+        std::pop_heap(open.begin(), open.end(), later);
+        const Node node = std::move(open.back());
+        open.pop_back();
+        if (node.cut.size() == 0) {
+            closed = std::min(closed, node.bound);
+            break;  // the worst bound cannot be improved any more
+        }
+        for (const double side : {1.0, -1.0}) {
+            Node child{node.bound, result.nodes, node.form, node.unsigned_unknowns, {}};
+            const auto rows = node.form.generators.rows();
+            child.form.generators.conservativeResize(rows + 1, Eigen::NoChange);
+            child.form.generators.row(rows) = side * node.cut.transpose();
+            std::erase_if(child.unsigned_unknowns, [&](auto j) { return node.cut[j] == 1.0; });
+            solve(child);
+            open.push_back(std::move(child));
+            std::push_heap(open.begin(), open.end(), later);
+        }
+    }
+    result.value = open.empty() ? closed : std::min(closed, open.front().bound);
+    return result;
+}
+
+}  // namespace nsma
