@@ -547,6 +547,11 @@ OrbitAnswer OrbitSolver::solve(const Bar& bar, const PatternProblem& problem,
         throw std::invalid_argument("level: expected a finite number > 0, got " +
                                     std::to_string(*request.level));
     }
+    const Eigen::Index window = 2 * static_cast<Eigen::Index>(problem.kernel.pattern.cells);
+    if (request.reference.size() > 0 && request.reference.size() != window) {
+        throw std::invalid_argument("reference: expected size " + std::to_string(window) + ", got " +
+                                    std::to_string(request.reference.size()));
+    }
     const auto begin = std::chrono::steady_clock::now();
     OrbitAnswer answer = Solve(options_, ipopt_, bar, problem, request).run();
     answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

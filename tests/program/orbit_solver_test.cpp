@@ -318,7 +318,7 @@ TEST(OrbitSolver, Misuse) {
     OrbitRequest wrong{.level = 12.0, .objective = Objective::nearest, .reference = VectorXd::Ones(5)};
     EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem, wrong), std::invalid_argument);
     // A level at an end of the interval takes another way: the same word.
-    wrong.level = 36.0;
+    wrong.level = *problem.set.interval().greatest;
     EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem, wrong), std::invalid_argument);
     EXPECT_THROW((void)pattern_problem({0, 1, 1}, 1), std::invalid_argument);
     EXPECT_THROW((void)pattern_problem({6, 0, 4}, 1), std::invalid_argument);
