@@ -42,7 +42,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 struct Result {
-    int exit_code = -1;  ///< -1: ended by a signal
+    int exit_code = -1;  ///< -signal when a signal ended it
     std::string out;
     std::string err;
 };
@@ -93,7 +93,7 @@ protected:
     Result finish(pid_t child) {
         int status = 0;
         waitpid(child, &status, 0);
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder_ / ".out"), contents(folder_ / ".err")};
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), contents(folder_ / ".out"), contents(folder_ / ".err")};
     }
 
     Result run(const std::vector<std::string>& words) { return finish(start(words)); }
@@ -360,7 +360,7 @@ TEST_F(Program, BadScenesAreOneLine) {
         std::string named;
     };
     const std::vector<Case> cases{
-        {"", "title"},
+        {"", "expected a scene"},
         {"this is no TOML", ""},
         {changed("length = 1.0\n", ""), "length"},
         {changed("length = 1.0", "length = -1.0"), "length"},
@@ -470,7 +470,10 @@ TEST_F(Program, InterruptedSweepKeepsReadableRows) {
     const pid_t child = start({"sweep", scene, "--out", out.string(), "--quiet"});
     // Wait for a few rows, a minute at most.
     for (int i = 0; i < 1200; ++i) {
-        if (lines_of(contents(out / "levels.csv.part")).size() > 8) break;
+        if (lines_of(contents(out / "levels.csv.part")).size() > 12) break;
+        siginfo_t ended{};
+        ASSERT_EQ(waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT), 0);
+        if (ended.si_pid != 0) break;  // finish() tells how it ended
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     kill(child, SIGINT);
