@@ -13,8 +13,8 @@ namespace nsma::app {
 namespace {
 
 constexpr const char* exit_codes =
-    "Exit: 0 done, 2 bad usage or scene, 3 nothing admissible, 4 a solver failed or the two\n"
-    "disagree beyond tolerance, 130 interrupted (what was done is kept).";
+    "Exit: 0 done, 2 bad usage or scene, 3 nothing admissible, 4 a solver failed, the two\n"
+    "disagree beyond tolerance or a proof does not hold, 130 interrupted (what was done is kept).";
 
 std::string version() {
     return "nsma " NSMA_VERSION " (Ipopt " + ipopt_version() + ", NLopt " + nlopt_version() +
@@ -58,6 +58,20 @@ void add_scene(CLI::App& command, SceneArguments& scene) {
     command.add_option("SCENE", scene.file, "scene file (TOML)")->required();
     command.add_option("--cells", scene.cells, "cells N instead of the scene's")->check(whole(1, max_cells));
     command.add_option("--gap", scene.gap, "gap d [m] instead of the scene's; negative: prestressed")->check(finite);
+}
+
+void add_period(CLI::App& command, std::vector<double>& period) {
+    command.add_option("--period", period, "periods LO HI in units of tau instead of the scene's patterns")
+        ->expected(2)->check(finite);
+}
+
+std::optional<std::array<double, 2>> checked_period(const std::vector<double>& period) {
+    if (period.empty()) return std::nullopt;
+    if (period[0] < 0 || period[1] < period[0]) {
+        throw InputError("command line: --period: expected 0 <= LO <= HI, got " +
+                         std::to_string(period[0]) + " " + std::to_string(period[1]));
+    }
+    return std::array{period[0], period[1]};
 }
 
 void add_quiet(CLI::App& command, bool& quiet) {
@@ -105,15 +119,16 @@ Arguments parse(int count, const char* const* words) {
                            "  nsma scan problems/first-mode.toml --cells 6 --period 0 4\n"
                            "  nsma orbit problems/first-mode.toml --free 48 --contact 16 --energy 37.5\n"
                            "  nsma sweep problems/first-mode.toml --out out/first-mode\n"
-                           "  nsma plot out/first-mode\n") +
+                           "  nsma plot out/first-mode\n"
+                           "  nsma prove problems/first-mode.toml --out proofs.jsonl\n"
+                           "  nsma check proofs.jsonl\n") +
                exit_codes);
 
     ScanArguments scan;
     std::vector<double> period;
     auto* scan_command = app.add_subcommand("scan", "list the patterns (r, p) with a nontrivial kernel, their verdicts and energy intervals");
     add_scene(*scan_command, scan.scene);
-    scan_command->add_option("--period", period, "periods LO HI in units of tau instead of the scene's patterns")
-        ->expected(2)->check(finite);
+    add_period(*scan_command, period);
     scan_command->add_flag("--csv", scan.csv, "CSV on stdout instead of a table");
     add_quiet(*scan_command, scan.quiet);
     scan_command->footer("Examples:\n"
@@ -154,7 +169,27 @@ Arguments parse(int count, const char* const* words) {
     add_quiet(*plot_command, plot.quiet);
     plot_command->footer("Example:\n  nsma plot out/first-mode");
 
-    for (auto* command : {scan_command, orbit_command, sweep_command, plot_command}) {
+    ProveArguments prove;
+    std::vector<double> prove_period;
+    auto* prove_command = app.add_subcommand("prove", "write exact certificates of the verdicts and energy intervals, one a line");
+    add_scene(*prove_command, prove.scene);
+    add_period(*prove_command, prove_period);
+    auto* prove_free = prove_command->add_option("--free", prove.free_steps, "free flight r [steps] of one pattern")->check(whole(1, max_period_steps / 2));
+    auto* prove_contact = prove_command->add_option("--contact", prove.contact_steps, "contact phase p [steps] of one pattern")->check(whole(1, max_period_steps / 2));
+    prove_free->needs(prove_contact);
+    prove_contact->needs(prove_free);
+    prove_command->add_option("--out", prove.out, "file to write; must not exist yet")->required();
+    add_quiet(*prove_command, prove.quiet);
+    prove_command->footer("Examples:\n"
+                          "  nsma prove problems/first-mode.toml --cells 6 --free 23 --contact 1 --out proof.jsonl\n"
+                          "  nsma prove problems/first-mode.toml --cells 24 --period 0 4 --out proofs.jsonl");
+
+    CheckArguments check;
+    auto* check_command = app.add_subcommand("check", "verify certificates from their four integers alone, in exact arithmetic");
+    check_command->add_option("FILE", check.file, "certificates written by nsma prove")->required();
+    check_command->footer("Example:\n  nsma check proofs.jsonl");
+
+    for (auto* command : {scan_command, orbit_command, sweep_command, plot_command, prove_command, check_command}) {
         command->failure_message(CLI::FailureMessage::simple);
     }
     try {
@@ -171,13 +206,7 @@ Arguments parse(int count, const char* const* words) {
     }
 
     if (*scan_command) {
-        if (!period.empty()) {
-            if (period[0] < 0 || period[1] < period[0]) {
-                throw InputError("command line: --period: expected 0 <= LO <= HI, got " +
-                                 std::to_string(period[0]) + " " + std::to_string(period[1]));
-            }
-            scan.period = {period[0], period[1]};
-        }
+        scan.period = checked_period(period);
         return scan;
     }
     if (*orbit_command) {
@@ -189,6 +218,11 @@ Arguments parse(int count, const char* const* words) {
         sweep.solver.solvers = sweep_words.choice();
         return sweep;
     }
+    if (*prove_command) {
+        prove.period = checked_period(prove_period);
+        return prove;
+    }
+    if (*check_command) return check;
     return plot;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -45,13 +46,27 @@ struct PlotArguments {
     bool quiet = false;
 };
 
+struct ProveArguments {
+    SceneArguments scene;
+    std::optional<std::array<double, 2>> period;  ///< [lo, hi] in units of tau
+    std::optional<int> free_steps;     ///< with contact_steps: one pattern instead of the scene's
+    std::optional<int> contact_steps;
+    std::string out;
+    bool quiet = false;
+};
+
+struct CheckArguments {
+    std::string file;
+};
+
 /// Help or version text was asked: print and leave with 0.
 struct TextArguments {
     std::string text;
 };
 
 using Arguments =
-    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, PlotArguments>;
+    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, PlotArguments,
+                 ProveArguments, CheckArguments>;
 
 /// Reads the command line. Throws InputError (one line) on anything it cannot take.
 [[nodiscard]] Arguments parse(int count, const char* const* words);

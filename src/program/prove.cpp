@@ -216,7 +216,8 @@ private:
             return;
         }
         if (!set_.vertices.empty()) take_point(set_.vertices.front());
-        if (!try_chain() && !try_tree(1) && options_.node_limit > 1) try_tree(options_.node_limit);
+        const bool closed = (options_.chain && try_chain()) || try_tree(1);
+        if (!closed && options_.node_limit > 1) try_tree(options_.node_limit);
         proof_.greatest_proved = certificate.energy_bound.has_value();
         if (!proof_.greatest_proved && proof_.unproved.empty()) {
             proof_.unproved = "no bound of the greatest energy verifies";

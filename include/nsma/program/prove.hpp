@@ -7,7 +7,8 @@ namespace nsma {
 
 struct ProveOptions {
     bool greatest = true;     ///< also prove an upper bound on the greatest energy
-    int node_limit = 2'000;   ///< of branch and bound
+    bool chain = true;        ///< try the chain of partial sums before branch and bound
+    int node_limit = 2'000;   ///< of branch and bound; 1: only its root
 };
 
 /// What could be proved of one pattern, and how far.
