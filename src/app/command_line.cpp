@@ -92,6 +92,9 @@ struct SolverWords {
         command.add_option("--starts", options.starts,
                            "starts per solver while the optimum is not proved (default 8)")
             ->check(whole(1, 10'000));
+        command.add_option("--bound-nodes", options.bound_nodes,
+                           "relaxations spent on proving one orbit the best (default 32; 0: none)")
+            ->check(whole(0, 1'000'000));
     }
     [[nodiscard]] SolverChoice choice() const {
         if (solver == "ipopt") return SolverChoice::ipopt;

@@ -13,6 +13,8 @@ constexpr double over_relaxation = 1.6;
 constexpr int check_every = 20;
 constexpr int stall_every = 200;
 constexpr double stall_tolerance = 0.02;
+// Within this of the target the splitting method is slow rather than stuck: it is let run.
+constexpr double close_gap = 1e-3;
 
 // The program in homogeneous form over the unit sphere: minimise x' C x.
 struct Homogeneous {
@@ -239,7 +241,8 @@ ConicBound conic_bound(const Program& program, double target, const ConicBoundOp
             if (node.bound >= wanted()) break;
             if (i > 0 && i % stall_every == 0) {
                 // A relaxation that has settled short of the target needs a split, not steps.
-                if (node.bound - last <= stall_tolerance * (target - node.bound)) break;
+                const bool close = target - node.bound <= close_gap * std::abs(target);
+                if (!close && node.bound - last <= stall_tolerance * (target - node.bound)) break;
                 last = node.bound;
             }
             splitting.balance();

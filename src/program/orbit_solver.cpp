@@ -21,6 +21,9 @@ constexpr double tie_tolerance = 1e-13;
 // Distance beyond a row, relative to the size of the point, that rounding explains.
 constexpr double row_rounding = 1e-13;
 
+// Unknowns beyond which a relaxation takes long enough to be counted four times.
+constexpr int large_program = 10;
+
 bool is_extreme(Objective objective) {
     return objective == Objective::min_energy || objective == Objective::max_energy;
 }
@@ -336,7 +339,9 @@ private:
         std::optional<Eigen::VectorXd> better;
         double objective = program.program.objective(program.point(best->candidate.gamma));
         ConicBoundOptions bounding;
-        bounding.node_limit = options_.bound_nodes;
+        const bool large = reduction_.variables() > large_program;
+        bounding.node_limit = large ? (options_.bound_nodes + 3) / 4 : options_.bound_nodes;
+        if (large) bounding.max_iterations = 2'000;
         bounding.improve = [&](const Eigen::VectorXd& x) {
             if (const auto near = restored(program, problem_.set, &*level, x)) {
                 const Polished polished = polish(program.program, program.point(*near));

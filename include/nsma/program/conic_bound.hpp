@@ -9,7 +9,7 @@
 namespace nsma {
 
 struct ConicBoundOptions {
-    int max_iterations = 2'000;      ///< of one relaxation
+    int max_iterations = 20'000;     ///< of one relaxation
     int node_limit = 32;             ///< relaxations in all
     double target_tolerance = 1e-7;  ///< stop once within this of the target, relative
     /// Offered the mean of each relaxed solution as a start; returns the best objective known,
