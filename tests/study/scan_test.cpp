@@ -57,7 +57,7 @@ TEST(Scan, UsesTheSignOfTheGap) {
     scene.patterns = nsma::ListSelection{{{16, 4}}};
     for (const auto& [gap, verdict] : {std::pair{0.3, Verdict::admissible}, {-0.3, Verdict::inadmissible}, {0.0, Verdict::inadmissible}}) {
         scene.bar.gap = gap;
-        nsma::scan(scene, [&, want = verdict](const auto& record) { EXPECT_EQ(record.verdict, want) << gap; },
+        nsma::scan(scene, [&, at = gap, want = verdict](const auto& record) { EXPECT_EQ(record.verdict, want) << at; },
                    [] { return true; });
     }
 }
