@@ -4,6 +4,7 @@
 
 #include "nsma/report/orbit_json.hpp"
 #include "nsma/report/scene_file.hpp"
+#include "nsma/report/tables.hpp"
 
 namespace nsma::app {
 namespace {
@@ -18,13 +19,18 @@ void print_text(const OrbitAnswer& answer, const Bar& bar) {
     fmt::print("pattern       r = {}, p = {}, N = {}: m = {}, T/tau = {:.6g}, omega/omega_1 = {:.6g}\n",
                pattern.free_steps, pattern.contact_steps, pattern.cells, answer.kernel_dimension,
                pattern.period_ratio(), pattern.frequency_ratio());
-    fmt::print("verdict       {}{}{}\n", name(answer.verdict), answer.reason.empty() ? "" : ": ", answer.reason);
+    fmt::print("verdict       {}{}{}{}\n", name(answer.verdict), answer.verdict_proved ? ", proved" : "",
+               answer.reason.empty() ? "" : ": ", answer.reason);
     if (answer.interval.least) {
         const std::string greatest = answer.interval.unbounded ? "unbounded"
                                      : answer.interval.greatest
                                          ? energy_text(*answer.interval.greatest, closed)
                                          : "unknown";
-        fmt::print("energies      {} to {}\n", energy_text(*answer.interval.least, closed), greatest);
+        const auto exactly = [](const std::string& fraction) {
+            return fraction.find('/') == std::string::npos ? std::string() : " = " + fraction;
+        };
+        fmt::print("energies      {}{} to {}{}\n", energy_text(*answer.interval.least, closed),
+                   exactly(answer.interval.least_exact), greatest, exactly(answer.interval.greatest_exact));
     }
     if (!answer.orbit) return;
     fmt::print("energy        {} = {:.10g} J\n", energy_text(*answer.energy, closed), energy(*answer.orbit));
@@ -37,13 +43,23 @@ void print_text(const OrbitAnswer& answer, const Bar& bar) {
                kind.minimal_period_steps, kind.silent_contact_steps, kind.wall_touches,
                kind.full_support ? "full" : "partial");
     fmt::print("peak force    {:.6g} N\n", contact_force(*answer.orbit).cwiseAbs().maxCoeff());
-    for (const auto& run : answer.solvers) {
-        fmt::print("{:<13} start {}: {}, {} iterations, {:.1f} ms, objective {}, raw violation {:.1e}\n",
-                   run.name, run.start, run.status, run.iterations, 1e3 * run.seconds,
-                   run.usable ? fmt::format("{:.10g}", run.objective) : "unusable", run.violation);
+    if (const auto& optimality = answer.optimality; optimality && optimality->lower_bound) {
+        fmt::print("bound         {:.10g}, {}\n", *optimality->lower_bound,
+                   optimality->global ? "the best orbit at this level"
+                                      : fmt::format("gap {:.1e}", optimality->gap));
     }
-    fmt::print("agreement     {}{}\n", name(answer.agreement),
-               answer.objective_difference ? fmt::format(" (relative difference {:.1e})", *answer.objective_difference) : "");
+    std::size_t further = answer.solvers.size();
+    for (const char* solver : {"ipopt", "nlopt"}) {
+        const SolverRun* run = best_run(answer, solver);
+        if (run == nullptr) continue;
+        --further;
+        fmt::print("{:<13} start {}: {}, {} iterations, {:.1f} ms, objective {}, raw violation {:.1e}\n",
+                   run->name, run->start, run->status, run->iterations, 1e3 * run->seconds,
+                   run->usable ? fmt::format("{:.10g}", run->objective) : "unusable", run->violation);
+    }
+    fmt::print("agreement     {}{}{}\n", name(answer.agreement),
+               answer.objective_difference ? fmt::format(", relative difference {:.1e}", *answer.objective_difference) : "",
+               further > 0 ? fmt::format(", {} further runs", further) : "");
     fmt::print("alpha [m/s]  ");
     const Eigen::VectorXd alpha = amplitudes(*answer.orbit);
     for (const double value : alpha) fmt::print(" {:.6g}", value);

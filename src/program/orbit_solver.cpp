@@ -21,7 +21,7 @@ constexpr double tie_tolerance = 1e-13;
 // Distance beyond a row, relative to the size of the point, that rounding explains.
 constexpr double row_rounding = 1e-13;
 
-// Unknowns beyond which a relaxation takes long enough to be counted four times.
+// Unknowns beyond which a relaxation takes long enough to be counted eightfold.
 constexpr int large_program = 10;
 
 bool is_extreme(Objective objective) {
@@ -340,7 +340,7 @@ private:
         double objective = program.program.objective(program.point(best->candidate.gamma));
         ConicBoundOptions bounding;
         const bool large = reduction_.variables() > large_program;
-        bounding.node_limit = large ? (options_.bound_nodes + 3) / 4 : options_.bound_nodes;
+        bounding.node_limit = large ? (options_.bound_nodes + 7) / 8 : options_.bound_nodes;
         if (large) bounding.max_iterations = 2'000;
         bounding.improve = [&](const Eigen::VectorXd& x) {
             if (const auto near = restored(program, problem_.set, &*level, x)) {

@@ -38,7 +38,7 @@ struct OrbitSolverOptions {
     double raw_violation = 1e-4;        ///< a raw answer further out is a failure of its solver
     double level_tolerance = 1e-15;     ///< relative; a level this close to an end is the end
     /// Relaxations spent on the bound of one answer, 0: none. Above 10 unknowns, where each takes
-    /// longer, a quarter of them, and shorter ones.
+    /// longer, an eighth of them, and shorter ones.
     int bound_nodes = 32;
     SolverOptions solver;
 };
