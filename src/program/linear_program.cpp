@@ -1,5 +1,6 @@
 #include "nsma/program/linear_program.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -48,7 +49,8 @@ LinearSolver::LinearSolver(const LinearProgram& program)
     simplex.setPrimalTolerance(1e-9);
     simplex.setDualTolerance(1e-9);
     CoinPackedMatrix matrix(true, 0, 0);
-    matrix.setDimensions(static_cast<int>(count), 0);
+    // CLP crashes on a program without rows: it gets one that holds always.
+    matrix.setDimensions(static_cast<int>(std::max<Eigen::Index>(count, 1)), 0);
     for (Eigen::Index j = 0; j < n; ++j) {
         CoinPackedVector entries;
         for (Eigen::Index i = 0; i < count; ++i) {
@@ -63,8 +65,9 @@ LinearSolver::LinearSolver(const LinearProgram& program)
     };
     const Eigen::VectorXd lower = clp_bounds(program.lower);
     const Eigen::VectorXd upper = clp_bounds(program.upper);
-    const Eigen::VectorXd row_lower = clp_bounds(program.row_lower);
-    const Eigen::VectorXd row_upper = clp_bounds(program.row_upper);
+    const Eigen::VectorXd none = Eigen::VectorXd::Constant(1, no_bound);
+    const Eigen::VectorXd row_lower = clp_bounds(count > 0 ? program.row_lower : Eigen::VectorXd(-none));
+    const Eigen::VectorXd row_upper = clp_bounds(count > 0 ? program.row_upper : none);
     const Eigen::VectorXd cost = Eigen::VectorXd::Zero(n);
     simplex.loadProblem(matrix, lower.data(), upper.data(), cost.data(), row_lower.data(),
                         row_upper.data());

@@ -142,6 +142,8 @@ TEST(LinearSolver, NoRowsAndFixedVariables) {
     const auto solution = solver.minimise(Vector2d(1, 1));
     ASSERT_EQ(solution.status, LinearStatus::optimal);
     EXPECT_EQ(solution.x, VectorXd(Vector2d(-1, 2)));
+    // The second solve goes on with the primal method, which CLP itself does not survive here.
+    EXPECT_EQ(solver.minimise(Vector2d(-1, 1)).x, VectorXd(Vector2d(1, 2)));
 }
 
 TEST(LinearSolver, SizeMismatchThrows) {

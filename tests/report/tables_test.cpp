@@ -92,7 +92,9 @@ TEST(Tables, NumbersReadBackToTheSameDouble) {
 
 TEST(Tables, ScanTableIsAligned) {
     PatternRecord open = admissible_record();
-    open.interval = {9.0, std::nullopt, true};
+    open.interval = EnergyInterval{};
+    open.interval.least = 9.0;
+    open.interval.unbounded = true;
     std::istringstream lines(scan_table(Bar{}, {admissible_record(), open}));
     std::size_t width = 0;
     int count = 0;
