@@ -16,11 +16,6 @@ constexpr const char* exit_codes =
     "Exit: 0 done, 2 bad usage or scene, 3 nothing admissible, 4 a solver failed, the two\n"
     "disagree beyond tolerance or a proof does not hold, 130 interrupted (what was done is kept).";
 
-std::string version() {
-    return "nsma " NSMA_VERSION " (Ipopt " + ipopt_version() + ", NLopt " + nlopt_version() +
-           ", CLP " + clp_version() + ")";
-}
-
 const CLI::Validator finite{
     [](const std::string& text) -> std::string {
         double value = 0;
@@ -113,6 +108,11 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
+std::string version() {
+    return "nsma " NSMA_VERSION " (Ipopt " + ipopt_version() + ", NLopt " + nlopt_version() +
+           ", CLP " + clp_version() + ")";
+}
+
 Arguments parse(int count, const char* const* words) {
     CLI::App app{"Nonsmooth modal analysis of a bar in unilateral contact, by the Wave Finite Element Method.",
                  "nsma"};
@@ -163,8 +163,15 @@ Arguments parse(int count, const char* const* words) {
     sweep_command->add_option("SCENE", sweep.scene_file, "scene file (TOML)")->required();
     sweep_command->add_option("--out", sweep.out, "folder for the results; made if missing")->required();
     sweep_words.add(*sweep_command, sweep.solver);
+    sweep_command->add_flag("--resume", sweep.resume, "go on with what the folder holds; without it all is done anew");
     add_quiet(*sweep_command, sweep.quiet);
-    sweep_command->footer("Example:\n  nsma sweep problems/first-mode.toml --out out/first-mode");
+    sweep_command->footer("Examples:\n  nsma sweep problems/first-mode.toml --out out/first-mode\n"
+                          "  nsma sweep problems/first-mode.toml --out out/first-mode --resume");
+
+    ExportArguments exported;
+    auto* export_command = app.add_subcommand("export", "write the tables and the summary of a stored sweep again");
+    export_command->add_option("DIR", exported.folder, "folder of a sweep")->required();
+    export_command->footer("Example:\n  nsma export out/first-mode");
 
     PlotArguments plot;
     auto* plot_command = app.add_subcommand("plot", "draw the charts of a stored sweep again");
@@ -192,7 +199,7 @@ Arguments parse(int count, const char* const* words) {
     check_command->add_option("FILE", check.file, "certificates written by nsma prove")->required();
     check_command->footer("Example:\n  nsma check proofs.jsonl");
 
-    for (auto* command : {scan_command, orbit_command, sweep_command, plot_command, prove_command, check_command}) {
+    for (auto* command : {scan_command, orbit_command, sweep_command, export_command, plot_command, prove_command, check_command}) {
         command->failure_message(CLI::FailureMessage::simple);
     }
     try {
@@ -226,6 +233,7 @@ Arguments parse(int count, const char* const* words) {
         return prove;
     }
     if (*check_command) return check;
+    if (*export_command) return exported;
     return plot;
 }
 

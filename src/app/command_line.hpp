@@ -38,7 +38,12 @@ struct SweepArguments {
     std::string scene_file;
     std::string out;
     OrbitSolverOptions solver;
+    bool resume = false;  ///< go on with what the folder holds
     bool quiet = false;
+};
+
+struct ExportArguments {
+    std::string folder;
 };
 
 struct PlotArguments {
@@ -65,8 +70,11 @@ struct TextArguments {
 };
 
 using Arguments =
-    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, PlotArguments,
+    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, ExportArguments, PlotArguments,
                  ProveArguments, CheckArguments>;
+
+/// Versions of the program and its solvers, one line.
+[[nodiscard]] std::string version();
 
 /// Reads the command line. Throws InputError (one line) on anything it cannot take.
 [[nodiscard]] Arguments parse(int count, const char* const* words);

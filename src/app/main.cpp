@@ -27,6 +27,7 @@ int main(int count, char** words) {
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error like a full disk
     try {
         const auto arguments = nsma::app::parse(count, words);
         return std::visit([](const auto& chosen) { return nsma::app::run(chosen, stop_requested); }, arguments);

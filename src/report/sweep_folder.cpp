@@ -43,6 +43,21 @@ void put_in_place(const fs::path& file) {
     if (code) fail(file, fmt::format("cannot be written: {}", code.message()));
 }
 
+/// Writes a file so that it is there whole or not at all.
+void write_whole(const fs::path& path, const std::string& text) {
+    const fs::path part = part_of(path);
+    std::FILE* file = std::fopen(part.c_str(), "wb");
+    if (file == nullptr) fail_errno(part);
+    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() &&
+                         std::fflush(file) == 0 && (fsync(fileno(file)) == 0 || errno == EINVAL);
+    const int code = errno;
+    if (std::fclose(file) != 0 || !written) {
+        if (!written) errno = code;
+        fail_errno(part);
+    }
+    put_in_place(path);
+}
+
 /// Whether the folder holds a whole, uninterrupted sweep.
 bool complete(const fs::path& folder) {
     for (const char* file : sweep_files) {
@@ -93,8 +108,7 @@ constexpr const char* csv_notes =
 
 }  // namespace
 
-SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)
-    : folder_(folder), bar_(scene.bar) {
+void prepare_sweep_folder(const fs::path& folder, const Scene& scene) {
     if (scene.text.empty())
         throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
     std::error_code code;
@@ -119,14 +133,13 @@ SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)
                      "is in the way: the folder has no scene.toml that would tell its scene");
             }
         }
-        Output output = open("scene.toml");
-        if (std::fwrite(scene.text.data(), 1, scene.text.size(), output.file.get()) !=
-            scene.text.size()) {
-            fail_errno(output.path);
-        }
-        close(output);
-        put_in_place(copy);
+        write_whole(copy, scene.text);
     }
+}
+
+SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)
+    : folder_(folder), bar_(scene.bar) {
+    prepare_sweep_folder(folder, scene);
     patterns_ = open("patterns.csv");
     levels_ = open("levels.csv");
     orbits_ = open("orbits.jsonl");

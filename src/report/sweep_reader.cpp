@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nsma/report/sweep_folder.hpp"
+#include "nsma/report/sweep_store.hpp"
 #include "csv.hpp"
 #include "one_line.hpp"
 
@@ -105,6 +106,23 @@ std::vector<StoredOrbit> read_orbits(const fs::path& file, const Scene& scene) {
     return orbits;
 }
 
+StoredSweep read_store(const fs::path& folder) {
+    const SweepStore store(folder);
+    StoredSweep sweep;
+    sweep.scene = store.scene();
+    store.for_each([&sweep](WorkResult result) {
+        if (result.record) sweep.patterns.push_back(std::move(*result.record));
+        if (!result.answer) return;
+        OrbitAnswer& answer = *result.answer;
+        sweep.levels.push_back({answer.pattern, answer.level, answer.verdict, answer.energy,
+                                std::string(name(answer.agreement))});
+        if (answer.orbit) {
+            sweep.orbits.push_back({answer.level, answer.energy.value_or(0.0), std::move(*answer.orbit)});
+        }
+    });
+    return sweep;
+}
+
 }  // namespace
 
 StoredSweep read_sweep_folder(const fs::path& folder) {
@@ -114,6 +132,7 @@ StoredSweep read_sweep_folder(const fs::path& folder) {
             one_line(fmt::format("{}: expected the folder of a sweep, got {}", folder.string(),
                                  fs::exists(folder, code) ? "a file" : "nothing")));
     }
+    if (SweepStore::in(folder)) return read_store(folder);
     for (const char* file : {"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl"}) {
         if (!fs::exists(folder / file, code)) {
             throw InputError(one_line(

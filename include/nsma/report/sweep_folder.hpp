@@ -16,6 +16,11 @@ namespace nsma {
 inline constexpr std::array<const char*, 6> sweep_files{
     "patterns.csv", "levels.csv", "orbits.jsonl", "timings.csv", "summary.txt", "summary.json"};
 
+/// Makes the folder if missing and puts the scene in it. Throws InputError when that cannot be
+/// done or the folder holds another scene's results, std::invalid_argument unless scene.text is
+/// the scene file as read.
+void prepare_sweep_folder(const std::filesystem::path& folder, const Scene& scene);
+
 /// Writes a sweep into a folder as its records come. Rows go to NAME.part files, flushed one by
 /// one, which take their final names in finish(), so that a final file is always complete.
 /// Throws InputError (one line) when the folder cannot be made or written, or holds another
@@ -77,7 +82,8 @@ struct StoredSweep {
     std::vector<StoredOrbit> orbits;
 };
 
-/// Reads a finished (or interrupted) sweep back. Throws InputError naming file and line when a
+/// Reads a finished (or interrupted) sweep back, from its store or, where there is none, from
+/// the CSV and JSONL files. Throws InputError naming file and line when a
 /// file is missing or damaged.
 [[nodiscard]] StoredSweep read_sweep_folder(const std::filesystem::path& folder);
 
