@@ -6,7 +6,7 @@ packages="
 g++ cmake ninja-build pkg-config
 libeigen3-dev coinor-libipopt-dev libnlopt-dev libnlopt-cxx-dev coinor-libclp-dev coinor-libcoinutils-dev
 libboost-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev
-libsqlitecpp-dev libsqlite3-dev
+libsqlitecpp-dev libsqlite3-dev libopenmpi-dev openmpi-bin
 libgtest-dev libgmock-dev
 gnuplot-nox fonts-dejavu-core
 "

@@ -132,6 +132,10 @@ Arguments parse(int count, const char* const* words) {
     auto* scan_command = app.add_subcommand("scan", "list the patterns (r, p) with a nontrivial kernel, their verdicts and energy intervals");
     add_scene(*scan_command, scan.scene);
     add_period(*scan_command, period);
+    std::string method = "certified";
+    scan_command->add_option("--method", method,
+                             "certified (default), linear (linear programs for what integers leave) or integers (alone)")
+        ->check(CLI::IsMember({"certified", "linear", "integers"}));
     scan_command->add_flag("--csv", scan.csv, "CSV on stdout instead of a table");
     add_quiet(*scan_command, scan.quiet);
     scan_command->footer("Examples:\n"
@@ -217,6 +221,7 @@ Arguments parse(int count, const char* const* words) {
 
     if (*scan_command) {
         scan.period = checked_period(period);
+        if (method != "certified") scan.method = method == "linear" ? ScanMethod::linear : ScanMethod::integers;
         return scan;
     }
     if (*orbit_command) {

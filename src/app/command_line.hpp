@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nsma/program/orbit_solver.hpp"
+#include "nsma/study/scan.hpp"
 
 namespace nsma::app {
 
@@ -20,6 +21,7 @@ struct SceneArguments {
 struct ScanArguments {
     SceneArguments scene;
     std::optional<std::array<double, 2>> period;  ///< [lo, hi] in units of tau
+    ScanMethod method = ScanMethod::certified;
     bool csv = false;
     bool quiet = false;
 };

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "commands.hpp"
+#include "crew.hpp"
 
 #include "nsma/report/scene_file.hpp"
 
@@ -32,7 +33,7 @@ int main(int count, char** words) {
         const auto arguments = nsma::app::parse(count, words);
         return std::visit([](const auto& chosen) { return nsma::app::run(chosen, stop_requested); }, arguments);
     } catch (const nsma::InputError& error) {
-        std::fprintf(stderr, "nsma: %s\n", error.what());
+        if (!nsma::app::silent_rank()) std::fprintf(stderr, "nsma: %s\n", error.what());
         return nsma::app::exit_input;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "nsma: internal error: %s\n", error.what());

@@ -38,12 +38,16 @@ int run(const ScanArguments& arguments, const std::atomic<bool>& stop) {
     long done = 0;
     int admissible = 0;
     int failed = 0;
+    Sieve sieve(scene.mesh.cells, scene.bar.gap_sign());
+    SieveCounts removed;
     if (arguments.csv) fmt::print("{}\n", scan_csv_header());
     {
         Progress progress("scan", arguments.quiet);
         scan(scene,
              [&](const PatternRecord& record) {
                  progress.show(++done, total);
+                 const Pattern& pattern = record.pattern;
+                 ++removed.of[static_cast<std::size_t>(sieve(pattern.free_steps, pattern.contact_steps).finding)];
                  if (record.verdict == Verdict::admissible) ++admissible;
                  if (record.verdict == Verdict::failed) {
                      ++failed;
@@ -57,11 +61,15 @@ int run(const ScanArguments& arguments, const std::atomic<bool>& stop) {
                      shown.push_back(record);
                  }
              },
-             [&] { return !stop.load(); });
+             [&] { return !stop.load(); }, arguments.method);
     }
     if (!arguments.csv) {
         fmt::print("{}{} patterns, {} with a nontrivial kernel, {} admissible\n",
                    scan_table(scene.bar, shown), done, shown.size(), admissible);
+        fmt::print("decided in integers: {} trivial kernels, {} with every live class bounded from both sides, "
+                   "{} by COND2's row, {} by a COND1 row\n",
+                   removed[Finding::trivial], removed[Finding::sign_conflict], removed[Finding::wrong_side],
+                   removed[Finding::penetrates]);
     }
     if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     if (stop.load()) return exit_interrupted;

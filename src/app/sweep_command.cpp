@@ -1,14 +1,18 @@
 #include <chrono>
+#include <functional>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "crew.hpp"
 #include "progress.hpp"
 
 #include "nsma/report/charts.hpp"
 #include "nsma/report/scene_file.hpp"
 #include "nsma/report/sweep_store.hpp"
 #include "nsma/report/tables.hpp"
+#include "nsma/study/record_rows.hpp"
 #include "nsma/study/sweep_work.hpp"
 
 namespace nsma::app {
@@ -29,23 +33,74 @@ std::string options_text(const OrbitSolverOptions& options) {
                        options.bound_nodes, options.solver.tolerance);
 }
 
+// A process that only computes.
+void help(Crew& crew, const Scene& scene, const OrbitSolverOptions& options) {
+    SweepWorker worker(scene, options);
+    while (const auto unit = crew.next()) crew.report(packed(worker.run(unpacked_unit(*unit))));
+}
+
+// The number of this process among the workers of a queue; the crew's are 0, 1, ...
+constexpr int own_worker = -2;
+
+// Hands out units and takes in results until all is done, stop is asked or nobody is left.
+void share(Crew& crew, const Scene& scene, SweepQueue& queue, const std::function<void(const WorkResult&)>& keep,
+           const std::atomic<bool>& stop) {
+    std::set<int> idle;
+    for (int worker = 0; worker < crew.workers(); ++worker) {
+        if (crew.present(worker)) idle.insert(worker);
+    }
+    std::size_t present = idle.size();
+    while (present > 0) {
+        for (auto worker = idle.begin(); worker != idle.end() && !stop.load();) {
+            const auto unit = queue.next(*worker);
+            if (!unit) break;
+            crew.hand(*worker, packed(*unit));
+            worker = idle.erase(worker);
+        }
+        // What is in hand is kept also after stop.
+        if (idle.size() == present && (queue.finished() || stop.load())) return;
+        const auto message = crew.wait();
+        if (!message) continue;
+        if (message->lost) {
+            queue.lost(message->worker);
+            --present;
+            continue;
+        }
+        keep(unpacked_result(message->bytes, scene.bar));
+        idle.insert(message->worker);
+    }
+}
+
 }  // namespace
 
 int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
     const Scene scene = load_scene({arguments.scene_file, std::nullopt, std::nullopt});
+    Crew crew;
+    if (crew.helper()) {
+        help(crew, scene, arguments.solver);
+        return exit_done;
+    }
     SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
-    SweepQueue queue(scene, SweepQueue::Order::scene);
+    SweepQueue queue(scene, crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
     if (arguments.resume) store.for_each([&queue](const WorkResult& result) { queue.done(result); });
     const auto begin = std::chrono::steady_clock::now();
     {
         Progress progress("sweep", arguments.quiet);
-        SweepWorker worker(scene, arguments.solver);
-        while (!queue.finished() && !stop.load()) {
-            const WorkResult result = worker.run(*queue.next(0));
+        const auto keep = [&](const WorkResult& result) {
             store.put(result);
             queue.done(result);
             progress.show(queue.done_count(), queue.total_count());
+        };
+        if (crew.workers() > 0) {
+            share(crew, scene, queue, keep, stop);
+        }
+        // Alone, or with everyone else gone.
+        SweepWorker worker(scene, arguments.solver);
+        while (!queue.finished() && !stop.load()) {
+            const auto unit = queue.next(own_worker);
+            if (!unit) break;
+            keep(worker.run(*unit));
         }
     }
     if (!store.complete()) {

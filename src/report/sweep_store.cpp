@@ -302,7 +302,7 @@ const Scene& SweepStore::scene() const { return implementation_->scene; }
 bool SweepStore::complete() const { return implementation_->info("complete") == "1"; }
 
 double SweepStore::seconds() const {
-    const auto numbers = numbers_in("[" + implementation_->info("seconds") + "]");
+    const auto numbers = numbers_in(fmt::format("[{}]", implementation_->info("seconds")));
     return numbers.empty() ? 0.0 : numbers.front();
 }
 

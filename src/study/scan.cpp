@@ -1,6 +1,7 @@
 #include "nsma/study/scan.hpp"
 
 #include <chrono>
+#include <cmath>
 
 namespace nsma {
 
@@ -21,15 +22,67 @@ PatternRecord pattern_record(const PatternProblem& problem, int gap_sign, double
     return record;
 }
 
+std::string_view argument(Finding finding) {
+    switch (finding) {
+        case Finding::trivial: return "the kernel is trivial";
+        case Finding::sign_conflict: return "COND3 bounds every amplitude from both sides";
+        case Finding::wrong_side: return "COND3 keeps the tip on one side: COND2 cannot hold";
+        case Finding::penetrates: return "COND1 is violated by every motion that COND3 allows";
+        case Finding::admissible: break;
+    }
+    return "";
+}
+
+namespace {
+
+// The sieve's word on one pattern, checked by a linear program and least norm if `linear`.
+PatternRecord sieved_record(const Pattern& pattern, int gap_sign, const Sieved& sieved, bool linear) {
+    PatternRecord record;
+    record.pattern = pattern;
+    record.gap_sign = gap_sign;
+    record.kernel_dimension = sieved.kernel_dimension;
+    record.reason = argument(sieved.finding);
+    if (sieved.finding != Finding::admissible) {
+        record.verdict = sieved.finding == Finding::trivial ? Verdict::trivial : Verdict::inadmissible;
+        return record;
+    }
+    record.verdict = Verdict::admissible;
+    record.interval.unbounded = sieved.unbounded;
+    record.interval.least = sieved.energy_least;
+    if (!sieved.unbounded) record.interval.greatest = sieved.energy_greatest;
+    if (!linear) return record;
+    PatternOptions options;
+    options.admissible.greatest = false;
+    options.prove = false;
+    const PatternProblem problem = pattern_problem(pattern, gap_sign, options);
+    // Least norm over integers of at most 2N: rounding only.
+    constexpr double rounding = 1e-9;
+    if (problem.verdict != Verdict::admissible ||
+        std::abs(*problem.interval.least - sieved.energy_least) > rounding * sieved.energy_least) {
+        record.verdict = Verdict::failed;
+        record.reason = "the linear program and the sieve disagree: " + problem.set.reason;
+    }
+    return record;
+}
+
+}  // namespace
+
 void scan(const Scene& scene, const std::function<void(const PatternRecord&)>& record,
-          const std::function<bool()>& keep_going) {
+          const std::function<bool()>& keep_going, ScanMethod method) {
     const int gap_sign = scene.bar.gap_sign();
+    Sieve sieve(scene.mesh.cells, gap_sign);
     for (const auto& pattern : patterns_of(scene)) {
         if (!keep_going()) return;
         const auto begin = std::chrono::steady_clock::now();
-        const PatternProblem problem = pattern_problem(pattern, gap_sign);
-        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-        record(pattern_record(problem, gap_sign, elapsed.count()));
+        PatternRecord found;
+        if (method == ScanMethod::certified) {
+            found = pattern_record(pattern_problem(pattern, gap_sign), gap_sign, 0.0);
+        } else {
+            found = sieved_record(pattern, gap_sign, sieve(pattern.free_steps, pattern.contact_steps),
+                                  method == ScanMethod::linear);
+        }
+        found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        record(found);
     }
 }
 

@@ -44,6 +44,30 @@ TEST(Scan, OrderAndPublicCounts) {
     EXPECT_EQ(admissible, 35);
 }
 
+TEST(Scan, EveryMethodGivesTheSameVerdictsAndIntervals) {
+    for (const double gap : {1.0, -1.0, 0.0}) {
+        Scene scene = six_cells();
+        scene.bar.gap = gap;
+        std::vector<PatternRecord> certified;
+        nsma::scan(scene, [&](const auto& record) { certified.push_back(record); }, [] { return true; });
+        for (const auto method : {nsma::ScanMethod::linear, nsma::ScanMethod::integers}) {
+            std::size_t i = 0;
+            nsma::scan(scene, [&](const auto& record) {
+                const PatternRecord& other = certified[i++];
+                EXPECT_EQ(record.pattern, other.pattern);
+                EXPECT_EQ(record.verdict, other.verdict) << record.reason;
+                EXPECT_EQ(record.kernel_dimension, other.kernel_dimension);
+                EXPECT_EQ(record.interval.unbounded, other.interval.unbounded);
+                EXPECT_EQ(record.interval.least, other.interval.least);  // both exact, rounded once
+                if (!other.interval.greatest_exact.empty()) {
+                    EXPECT_EQ(record.interval.greatest, other.interval.greatest);
+                }
+            }, [] { return true; }, method);
+            EXPECT_EQ(i, certified.size());
+        }
+    }
+}
+
 TEST(Scan, StopsBeforeTheNextPattern) {
     int asked = 0;
     int seen = 0;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 
+#include "nsma/orbit/sieve.hpp"
 #include "nsma/program/orbit_solver.hpp"
 #include "nsma/study/records.hpp"
 #include "nsma/study/scene.hpp"
@@ -11,9 +13,20 @@ namespace nsma {
 /// Verdict and energy interval of one pattern for a gap of the given sign.
 [[nodiscard]] PatternRecord pattern_record(const PatternProblem& problem, int gap_sign, double seconds);
 
+/// What stands behind the verdicts of a scan.
+enum class ScanMethod {
+    certified,  ///< linear program, least norm and an exact certificate of every pattern
+    linear,     ///< the sieve in integers; what it leaves by linear program and least norm
+    integers    ///< the sieve alone
+};
+
 /// Scans every pattern of the scene in its order, trivial ones included, and hands each record
-/// on as it comes. `keep_going` is asked before each pattern.
+/// on as it comes. `keep_going` is asked before each pattern. With `linear` a program that
+/// contradicts the sieve makes the record `failed`; the greatest energy is the sieve's.
 void scan(const Scene& scene, const std::function<void(const PatternRecord&)>& record,
-          const std::function<bool()>& keep_going);
+          const std::function<bool()>& keep_going, ScanMethod method = ScanMethod::certified);
+
+/// The argument of a finding, one line.
+[[nodiscard]] std::string_view argument(Finding finding);
 
 }  // namespace nsma

@@ -1,0 +1,186 @@
+// Sweeps as processes: killed at any moment, gone on with, and shared by several ranks.
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+class SweepProcess : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = (fs::temp_directory_path() / "nsma-sweep-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+        scene_ = write_scene("scene.toml", "least-shock", "[1.6, 3.0, 12.0]");
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string write_scene(const std::string& name, const std::string& objective, const std::string& levels) {
+        std::ofstream(folder_ / name) << "title = \"Test\"\n[bar]\nlength = 1.0\nyoung_modulus = 1.0\ndensity = 1.0\n"
+                                         "area = 1.0\ngap = 1.0\n[mesh]\ncells = 5\n[patterns]\nperiod = [2.0, 4.0]\n"
+                                         "[levels]\nlist = "
+                                      << levels << "\n[program]\nobjective = \"" << objective << "\"\n";
+        return (folder_ / name).string();
+    }
+
+    pid_t start(std::vector<std::string> words) {
+        std::vector<char*> pointers;
+        for (auto& word : words) pointers.push_back(word.data());
+        pointers.push_back(nullptr);
+        const std::string out = (folder_ / ".out").string();
+        const pid_t child = fork();
+        if (child == 0) {
+            setpgid(0, 0);  // so that what it starts can be ended with it
+            const int file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+            dup2(file, STDOUT_FILENO);
+            dup2(file, STDERR_FILENO);
+            execvp(pointers[0], pointers.data());
+            _exit(127);
+        }
+        return child;
+    }
+    /// Exit code, or -1 when a signal ended it.
+    static int finish(pid_t child) {
+        int status = 0;
+        EXPECT_EQ(waitpid(child, &status, 0), child);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    int run(const std::vector<std::string>& words) { return finish(start(words)); }
+    std::string output() { return contents(folder_ / ".out"); }
+
+    static std::vector<std::string> sweep(const std::string& scene, const fs::path& out, bool resume = false) {
+        std::vector<std::string> words{NSMA_PROGRAM, "sweep", scene, "--out", out.string(), "--quiet"};
+        if (resume) words.emplace_back("--resume");
+        return words;
+    }
+    static std::vector<std::string> ranks(int count, const std::vector<std::string>& words) {
+        std::vector<std::string> all{"mpirun", "--oversubscribe", "-n", std::to_string(count)};
+        all.insert(all.end(), words.begin(), words.end());
+        return all;
+    }
+
+    void expect_same(const fs::path& a, const fs::path& b) {
+        for (const char* name : {"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl"}) {
+            EXPECT_EQ(contents(a / name), contents(b / name)) << name;
+            EXPECT_FALSE(contents(a / name).empty()) << name;
+        }
+        auto first = nlohmann::json::parse(contents(a / "summary.json"));
+        auto second = nlohmann::json::parse(contents(b / "summary.json"));
+        first.erase("seconds");
+        second.erase("seconds");
+        EXPECT_EQ(first, second);
+    }
+
+    fs::path folder_;
+    std::string scene_;
+};
+
+TEST_F(SweepProcess, KilledAtTwentyRandomMomentsItGoesOnToTheSameTables) {
+    for (const std::string objective : {"least-shock", "nearest"}) {
+        const std::string scene = write_scene(objective + ".toml", objective, "[1.6, 3.0, 12.0]");
+        const auto begin = std::chrono::steady_clock::now();
+        const fs::path whole = folder_ / (objective + "-whole");
+        const int code = run(sweep(scene, whole));
+        ASSERT_TRUE(code == 0 || code == 4) << output();
+        const auto length = std::chrono::steady_clock::now() - begin;
+        // Where the kills fall changes nothing in what is expected.
+        std::mt19937 random(20);
+        std::uniform_real_distribution<double> share(0.0, 1.0);
+        const fs::path out = folder_ / objective;
+        for (int kills = 0; kills < 10; ++kills) {
+            const pid_t child = start(sweep(scene, out, true));
+            std::this_thread::sleep_for(share(random) * length / 3);
+            kill(child, SIGKILL);
+            (void)finish(child);
+        }
+        EXPECT_EQ(run(sweep(scene, out, true)), code) << output();
+        expect_same(out, whole);
+        // Once more changes nothing, nor does a new export.
+        EXPECT_EQ(run(sweep(scene, out, true)), code) << output();
+        fs::remove(out / "levels.csv");
+        EXPECT_EQ(run({NSMA_PROGRAM, "export", out.string()}), 0) << output();
+        expect_same(out, whole);
+    }
+}
+
+TEST_F(SweepProcess, AnyNumberOfRanksGivesTheSameTables) {
+    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+    for (const std::string objective : {"least-shock", "nearest"}) {
+        const std::string scene = write_scene(objective + ".toml", objective, "[1.6, 3.0, 12.0]");
+        const fs::path alone = folder_ / (objective + "-alone");
+        const int code = run(sweep(scene, alone));
+        for (const int count : {1, 2, 4}) {
+            const fs::path out = folder_ / (objective + std::to_string(count));
+            const int shared = run(ranks(count, sweep(scene, out)));
+            if (shared == 127) GTEST_SKIP() << "no mpirun here";
+            EXPECT_EQ(shared, code) << output();
+            expect_same(out, alone);
+        }
+    }
+}
+
+TEST_F(SweepProcess, ALostRankLosesNothingThatWasStored) {
+    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+    const fs::path alone = folder_ / "alone";
+    const fs::path out = folder_ / "out";
+    const int code = run(sweep(scene_, alone));
+    const pid_t child = start(ranks(2, sweep(scene_, out)));
+    // A minute at most for the store to be there; then every process at once is killed.
+    for (int i = 0; i < 1200 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite"); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    kill(-child, SIGKILL);
+    if (finish(child) == 127) GTEST_SKIP() << "no mpirun here";
+    // The ranks see that mpirun is gone and end.
+    int resumed = 2;
+    for (int i = 0; i < 100 && resumed == 2; ++i) {
+        resumed = run(sweep(scene_, out, true));
+        if (resumed == 2) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+    EXPECT_EQ(resumed, code) << output();
+    expect_same(out, alone);
+}
+
+TEST_F(SweepProcess, RefusalsAreOneLine) {
+    const fs::path out = folder_ / "out";
+    const int code = run(sweep(scene_, out));
+    EXPECT_TRUE(code == 0 || code == 4) << output();
+    const std::string other = write_scene("other.toml", "least-force", "[1.6]");
+    EXPECT_EQ(run(sweep(other, out, true)), 2);
+    EXPECT_NE(output().find("holds results of another scene"), std::string::npos) << output();
+    auto words = sweep(scene_, out, true);
+    words.insert(words.end(), {"--solver", "nlopt"});
+    EXPECT_EQ(run(words), 2);
+    EXPECT_NE(output().find("options: expected solver nlopt"), std::string::npos) << output();
+    EXPECT_EQ(output().find('\n'), output().size() - 1);
+    EXPECT_EQ(run({NSMA_PROGRAM, "export", (folder_ / "nothing").string()}), 2);
+    EXPECT_EQ(output().find('\n'), output().size() - 1);
+}
+
+}  // namespace

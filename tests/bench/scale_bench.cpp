@@ -1,0 +1,152 @@
+// How time grows with the mesh: run by run.sh, which fits the exponents. The number after the slash is what the time
+// is fitted against.
+
+#include <filesystem>
+#include <numeric>
+
+#include <benchmark/benchmark.h>
+
+#include "nsma/orbit/dense_kernel.hpp"
+#include "nsma/orbit/sieve.hpp"
+#include "nsma/program/level_points.hpp"
+#include "nsma/program/orbit_program.hpp"
+#include "nsma/program/orbit_solver.hpp"
+#include "nsma/report/sweep_store.hpp"
+#include "nsma/study/record_rows.hpp"
+#include "nsma/study/scan.hpp"
+#include "nsma/wave/dense_wfem.hpp"
+#include "nsma/wave/marcher.hpp"
+
+namespace {
+
+using namespace nsma;
+
+// Every pattern with n_T <= 4N: 8 N^2 of them.
+void sieve(benchmark::State& state) {
+    const int cells = static_cast<int>(state.range(0));
+    long patterns = 0;
+    for (auto _ : state) patterns = sieve_all(cells, 1, 2, 4 * cells).patterns();
+    state.counters["patterns"] = static_cast<double>(patterns);
+}
+BENCHMARK(sieve)->Arg(125)->Arg(250)->Arg(500)->Arg(1000)->Unit(benchmark::kMillisecond);
+
+// Verdict and least energy of each of them, by linear program and least norm where the sieve leaves one.
+void scan_linear(benchmark::State& state) {
+    Scene scene;
+    scene.mesh.cells = static_cast<int>(state.range(0));
+    scene.patterns = PeriodSelection{{0.0, 4.0}, std::nullopt};
+    long admissible = 0, failed = 0;
+    for (auto _ : state) {
+        admissible = failed = 0;
+        scan(scene, [&](const PatternRecord& record) {
+            admissible += record.verdict == Verdict::admissible;
+            failed += record.verdict == Verdict::failed;
+        }, [] { return true; }, ScanMethod::linear);
+    }
+    state.counters["admissible"] = static_cast<double>(admissible);
+    state.counters["failed"] = static_cast<double>(failed);
+}
+BENCHMARK(scan_linear)->Arg(25)->Arg(50)->Arg(100)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+// The kernel of (16 N/6, 4 N/6), m = N/1.5, by cycles and by singular values of the literal matrix.
+Pattern proportional(int cells) { return {cells, 16 * cells / 6, 4 * cells / 6}; }
+
+void kernel_exact(benchmark::State& state) {
+    const Pattern pattern = proportional(static_cast<int>(state.range(0)));
+    for (auto _ : state) benchmark::DoNotOptimize(exact_kernel(pattern).dimension());
+}
+BENCHMARK(kernel_exact)->Arg(12)->Arg(24)->Arg(48)->Arg(96)->Arg(768)->Unit(benchmark::kMicrosecond);
+
+void kernel_dense(benchmark::State& state) {
+    const Pattern pattern = proportional(static_cast<int>(state.range(0)));
+    for (auto _ : state) benchmark::DoNotOptimize(dense::svd_kernel(Bar{}, pattern).cols());
+}
+BENCHMARK(kernel_dense)->Arg(12)->Arg(24)->Arg(48)->Arg(96)->Unit(benchmark::kMicrosecond);
+
+// One period of 4 tau from the least-energy orbit of mode 1: the queue, and matrix times vector.
+Orbit some_orbit(int cells) {
+    const Kernel kernel = exact_kernel(proportional(cells));
+    const Eigen::VectorXd row = contact_row(kernel).cast<double>();
+    return make_orbit(Bar{}, kernel, row / row.squaredNorm());
+}
+
+void march_queue(benchmark::State& state) {
+    const int cells = static_cast<int>(state.range(0));
+    const Orbit orbit = some_orbit(cells);
+    const State start = initial_state(orbit);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(march(orbit.bar, Mesh{cells}, start, orbit.kernel.pattern.period_steps()).periods);
+    }
+}
+BENCHMARK(march_queue)->Arg(24)->Arg(48)->Arg(96)->Arg(192)->Unit(benchmark::kMicrosecond);
+
+void march_dense(benchmark::State& state) {
+    const int cells = static_cast<int>(state.range(0));
+    const Orbit orbit = some_orbit(cells);
+    const State start = initial_state(orbit);
+    const Eigen::MatrixXd free = dense::free_step_matrix(orbit.bar, Mesh{cells});
+    const Eigen::MatrixXd contact = dense::contact_step_matrix(orbit.bar, Mesh{cells});
+    for (auto _ : state) {
+        State now = start;
+        for (int n = 0; n < orbit.kernel.pattern.free_steps; ++n) now = free * now;
+        for (int n = 0; n < orbit.kernel.pattern.contact_steps; ++n) now = contact * now;
+        benchmark::DoNotOptimize(now.data());
+    }
+}
+BENCHMARK(march_dense)->Arg(24)->Arg(48)->Arg(96)->Arg(192)->Unit(benchmark::kMicrosecond);
+
+// One call of one solver on the condensed program of (4N - 1, 1), m = 2N - 1, at half its interval (in logarithm).
+void solve(benchmark::State& state, bool with_ipopt) {
+    const int m = static_cast<int>(state.range(0));
+    const int cells = (m + 1) / 2;
+    PatternOptions options;
+    options.prove = false;
+    const PatternProblem problem = pattern_problem({cells, 4 * cells - 1, 1}, 1, options);
+    const double level = std::sqrt(*problem.interval.least * *problem.interval.greatest);
+    const OrbitProgram program =
+        orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, level, 0.0);
+    const LevelPoints points(problem.set, level);
+    const Eigen::VectorXd start = program.point(*points.start(1));
+    IpoptSolver ipopt;
+    int iterations = 0;
+    for (auto _ : state) {
+        iterations = with_ipopt ? ipopt.solve(program.program, start).iterations
+                                : solve_with_nlopt(NloptMethod::slsqp, program.program, start).iterations;
+    }
+    state.counters["iterations"] = iterations;
+}
+void solve_ipopt(benchmark::State& state) { solve(state, true); }
+void solve_nlopt(benchmark::State& state) { solve(state, false); }
+BENCHMARK(solve_ipopt)->Arg(7)->Arg(15)->Arg(31)->Arg(63)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve_nlopt)->Arg(7)->Arg(15)->Arg(31)->Arg(63)->Unit(benchmark::kMillisecond);
+
+// What rank 0 does for one result: read the message, store it, choose the next unit, pack it. The number is N.
+void serve(benchmark::State& state) {
+    Scene scene;
+    scene.mesh.cells = static_cast<int>(state.range(0));
+    scene.patterns = ListSelection{{{proportional(scene.mesh.cells).free_steps, proportional(scene.mesh.cells).contact_steps}}};
+    scene.levels.resize(1'000'000, 12.0);
+    scene.text = "benchmark";
+    SweepWorker worker(scene, {});
+    SweepQueue queue(scene, SweepQueue::Order::longest_first);
+    const auto folder = std::filesystem::temp_directory_path() / ("nsma-bench-" + std::to_string(state.range(0)));
+    std::filesystem::remove_all(folder);
+    {
+        SweepStore store(folder, scene, {"", ""}, SweepStore::Mode::fresh);
+        WorkResult result = worker.run(*queue.next(0));
+        queue.done(result);
+        result = worker.run({0, 1, {}});
+        const std::string message = packed(result);
+        int place = 0;
+        for (auto _ : state) {
+            WorkResult got = unpacked_result(message, scene.bar);
+            got.place = place++;
+            store.put(got);
+            benchmark::DoNotOptimize(packed(WorkUnit{0, place, {}}).data());
+        }
+    }
+    std::filesystem::remove_all(folder);
+}
+BENCHMARK(serve)->Arg(12)->Arg(48)->Unit(benchmark::kMicrosecond);
+
+}  // namespace

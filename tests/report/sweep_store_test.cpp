@@ -1,0 +1,224 @@
+#include "nsma/report/sweep_store.hpp"
+
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "nsma/study/sweep.hpp"
+#include "sample.hpp"
+
+namespace nsma {
+namespace {
+
+using sample::error_of;
+using testing::HasSubstr;
+using Mode = SweepStore::Mode;
+
+constexpr const char* scene_text = R"(title = "A sample"
+[bar]
+length = 2.0
+young_modulus = 3.0
+density = 1.0
+area = 1.0
+gap = 0.1
+[mesh]
+cells = 6
+[patterns]
+list = [[16, 4], [23, 1], [3, 3], [5, 1]]
+[levels]
+list = [0.5, 1.6, 12.0]
+[program]
+objective = "nearest"
+)";
+
+class SweepStoreTest : public sample::Folder {
+protected:
+    Scene scene = parse_scene(scene_text, "sample");
+    StoreVersions versions{"nsma 1", "solver both"};
+
+    /// Does up to `limit` further units, as nsma sweep does; true when none is left.
+    bool work(SweepStore& store, int limit = 1'000'000) {
+        SweepQueue queue(scene, SweepQueue::Order::scene);
+        store.for_each([&queue](const WorkResult& result) { queue.done(result); });
+        SweepWorker worker(scene, {});
+        for (; limit > 0 && !queue.finished(); --limit) {
+            const WorkResult result = worker.run(*queue.next(0));
+            store.put(result);
+            queue.done(result);
+        }
+        return queue.finished();
+    }
+    std::string whole(const std::filesystem::path& folder) {
+        SweepStore store(folder, scene, versions, Mode::fresh);
+        EXPECT_TRUE(work(store));
+        store.add_seconds(1.5);
+        store.finish();
+        return export_sweep(store, folder).line;
+    }
+    void expect_same_tables(const std::filesystem::path& a, const std::filesystem::path& b) {
+        for (const char* name : {"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl"}) {
+            EXPECT_EQ(sample::read(a / name), sample::read(b / name)) << name;
+            EXPECT_FALSE(sample::read(a / name).empty()) << name;
+        }
+        auto first = nlohmann::json::parse(sample::read(a / "summary.json"));
+        auto second = nlohmann::json::parse(sample::read(b / "summary.json"));
+        first.erase("seconds");
+        second.erase("seconds");
+        EXPECT_EQ(first, second);
+    }
+};
+
+TEST_F(SweepStoreTest, TablesAreThoseOfASweepWithoutAStore) {
+    EXPECT_THAT(whole(path / "store"), HasSubstr("results are in"));
+    EXPECT_TRUE(std::filesystem::exists(path / "store" / "results.sqlite"));
+    EXPECT_FALSE(std::filesystem::exists(path / "store" / "results.sqlite.part"));
+    SweepFolder direct(path / "direct", scene);
+    (void)direct.finish(sweep(scene, {}, direct, [] { return true; }));
+    expect_same_tables(path / "store", path / "direct");
+    EXPECT_THAT(sample::read(path / "store" / "summary.json"), HasSubstr("\"seconds\": 1.5"));
+}
+
+TEST_F(SweepStoreTest, GoesOnFromEveryUnitToTheSameTables) {
+    (void)whole(path / "whole");
+    for (int done = 0; done < 14; ++done) {
+        const auto folder = path / std::to_string(done);
+        for (bool finished = false; !finished;) {
+            SweepStore store(folder, scene, versions, Mode::resume);
+            finished = work(store, done + 1);
+            if (finished) {
+                store.finish();
+                (void)export_sweep(store, folder);
+            }
+        }
+        expect_same_tables(folder, path / "whole");
+    }
+}
+
+TEST_F(SweepStoreTest, ResumingACompleteStoreChangesNothing) {
+    (void)whole(path);
+    const std::string before = sample::read(path / "results.sqlite");
+    SweepStore store(path, scene, versions, Mode::resume);
+    EXPECT_TRUE(store.complete());
+    EXPECT_TRUE(work(store, 0));
+    (void)export_sweep(store, path);
+    EXPECT_EQ(sample::read(path / "results.sqlite"), before);
+}
+
+TEST_F(SweepStoreTest, AFreshRunKeepsCompleteResultsUntilItsEnd) {
+    (void)whole(path);
+    const std::string before = sample::read(path / "levels.csv");
+    {
+        SweepStore store(path, scene, versions, Mode::fresh);
+        EXPECT_FALSE(work(store, 3));
+        EXPECT_THAT(export_sweep(store, path).line, HasSubstr("keeps its complete results"));
+        EXPECT_EQ(sample::read(path / "levels.csv"), before);
+        EXPECT_TRUE(SweepStore(path).complete());
+    }
+    SweepStore store(path, scene, versions, Mode::resume);
+    EXPECT_FALSE(store.complete());
+    EXPECT_TRUE(work(store));
+    store.finish();
+    EXPECT_THAT(export_sweep(store, path).line, HasSubstr("results are in"));
+    EXPECT_EQ(sample::read(path / "levels.csv"), before);
+}
+
+TEST_F(SweepStoreTest, NothingIsDoubled) {
+    SweepStore store(path, scene, versions, Mode::fresh);
+    SweepWorker worker(scene, {});
+    for (int time = 0; time < 2; ++time) {
+        store.put(worker.run({0, -1, {}}));
+        store.put(worker.run({0, 0, {}}));
+    }
+    int count = 0;
+    store.for_each([&count](const WorkResult&) { ++count; });
+    EXPECT_EQ(count, 2);
+}
+
+TEST_F(SweepStoreTest, AnotherSceneOrVersionIsRefused) {
+    {
+        SweepStore store(path, scene, versions, Mode::fresh);
+        (void)work(store, 2);
+    }
+    const auto message = [&](const StoreVersions& other) {
+        return error_of([&] { SweepStore(path, scene, other, Mode::resume); });
+    };
+    EXPECT_THAT(message({"nsma 2", "solver both"}), HasSubstr("software: expected nsma 2, got a store of nsma 1"));
+    EXPECT_THAT(message({"nsma 1", "solver ipopt"}), HasSubstr("options: expected solver ipopt"));
+    EXPECT_EQ(message(versions), "no error");
+    scene.text += "# changed\n";
+    EXPECT_THAT(message(versions), HasSubstr("holds results of another scene"));
+    sample::write(path / "scene.toml", scene.text);
+    EXPECT_THAT(message(versions), HasSubstr("results.sqlite.part: holds results of another scene (hash "));
+}
+
+TEST_F(SweepStoreTest, TwoRunsInOneFolderAreRefused) {
+    SweepStore store(path, scene, versions, Mode::fresh);
+    for (const Mode mode : {Mode::fresh, Mode::resume}) {
+        EXPECT_THAT(error_of([&] { SweepStore(path, scene, versions, mode); }), HasSubstr("in use by another process"));
+    }
+    (void)work(store, 2);
+}
+
+TEST_F(SweepStoreTest, ADamagedStoreIsOneLine) {
+    sample::write(path / "results.sqlite.part", "this is not a database, though it is long enough to be looked at\n");
+    const std::string message = error_of([&] { SweepStore(path, scene, versions, Mode::resume); });
+    EXPECT_THAT(message, HasSubstr("results.sqlite.part: cannot be"));
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    EXPECT_THAT(error_of([&] { SweepStore{path / "nothing"}; }), HasSubstr("without results.sqlite"));
+    sample::write(path / "results.sqlite", "");
+    EXPECT_THAT(error_of([&] { SweepStore{path}; }), HasSubstr("empty store"));
+}
+
+/// A file-size limit fails writes as a full disk does.
+class SizeLimit {
+public:
+    explicit SizeLimit(rlim_t bytes) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~SizeLimit() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+private:
+    rlimit before_{};
+    void (*handler_)(int) = nullptr;
+};
+
+TEST_F(SweepStoreTest, NoRoomLeftIsOneLineAndTheStoreStaysValid) {
+    (void)whole(path / "whole");
+    {
+        SweepStore store(path / "out", scene, versions, Mode::fresh);
+        (void)work(store, 3);
+        const SizeLimit limit(static_cast<rlim_t>(std::filesystem::file_size(path / "out" / "results.sqlite.part-wal")));
+        const std::string message = error_of([&] { (void)work(store); });
+        EXPECT_THAT(message, HasSubstr("results.sqlite.part: cannot be written: "));
+        EXPECT_EQ(message.find('\n'), std::string::npos);
+    }
+    SweepStore store(path / "out", scene, versions, Mode::resume);
+    int kept = 0;
+    store.for_each([&kept](const WorkResult&) { ++kept; });
+    EXPECT_GE(kept, 3);
+    EXPECT_TRUE(work(store));
+    store.finish();
+    (void)export_sweep(store, path / "out");
+    expect_same_tables(path / "out", path / "whole");
+}
+
+TEST_F(SweepStoreTest, ReadsBackForCharts) {
+    (void)whole(path);
+    for (const char* file : sweep_files) std::filesystem::remove(path / file);
+    const StoredSweep stored = read_sweep_folder(path);
+    EXPECT_EQ(stored.scene.title, "A sample");
+    EXPECT_EQ(stored.patterns.size(), 4U);
+    EXPECT_EQ(stored.levels.size() % 4, 0U);
+    EXPECT_FALSE(stored.orbits.empty());
+}
+
+}  // namespace
+}  // namespace nsma
