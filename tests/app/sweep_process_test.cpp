@@ -41,7 +41,7 @@ protected:
 
     std::string write_scene(const std::string& name, const std::string& objective, const std::string& levels) {
         std::ofstream(folder_ / name) << "title = \"Test\"\n[bar]\nlength = 1.0\nyoung_modulus = 1.0\ndensity = 1.0\n"
-                                         "area = 1.0\ngap = 1.0\n[mesh]\ncells = 5\n[patterns]\nperiod = [2.0, 4.0]\n"
+                                         "area = 1.0\ngap = 1.0\n[mesh]\ncells = 3\n[patterns]\nperiod = [1.0, 4.0]\n"
                                          "[levels]\nlist = "
                                       << levels << "\n[program]\nobjective = \"" << objective << "\"\n";
         return (folder_ / name).string();
