@@ -232,6 +232,7 @@ IpoptSolver::IpoptSolver(const SolverOptions& options)
     set_option(list, "jac_c_constant", "no");
     set_option(list, "jac_d_constant", "yes");  // inequalities are linear
     set_option(list, "mu_strategy", "adaptive");
+    set_option(list, "mu_oracle", "loqo");  // the default solves twice more an iteration, for no fewer of them
     // An empty name keeps a file ipopt.opt in the working directory from changing any of this.
     if (application->Initialize("") != Ipopt::Solve_Succeeded) {
         throw std::runtime_error("Ipopt: initialisation failed");

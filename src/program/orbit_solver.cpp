@@ -9,6 +9,7 @@
 
 #include "nsma/program/conic_bound.hpp"
 #include "nsma/program/level_points.hpp"
+#include "nsma/program/lifted_program.hpp"
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/polish.hpp"
 
@@ -370,6 +371,15 @@ private:
         }
     }
 
+    // Ipopt on the form of the program that its size prefers.
+    [[nodiscard]] SolverOutcome solve_by_ipopt(const OrbitProgram& program, const Eigen::VectorXd& x) {
+        if (!prefers_lifted(program, problem_.kernel)) return ipopt_.solve(program.program, x);
+        const LiftedProgram lifted = lifted_program(program, reduction_, problem_.kernel);
+        SolverOutcome outcome = ipopt_.solve(lifted.program, lifted.point(x));
+        outcome.x.conservativeResize(x.size());
+        return outcome;
+    }
+
     // One call of one solver, restored, polished and ranked; false when it is not usable.
     bool attempt(const OrbitProgram& program, const std::optional<LevelPoints>& level,
                  const Eigen::VectorXd& start, const std::string& solver, int number, Best& best,
@@ -377,7 +387,7 @@ private:
         const Eigen::VectorXd x = program.point(start);
         SolverOutcome outcome;
         if (solver == "ipopt") {
-            outcome = ipopt_.solve(program.program, x);
+            outcome = solve_by_ipopt(program, x);
         } else {
             const auto method =
                 solver == "nlopt-slsqp" ? NloptMethod::slsqp : NloptMethod::auglag_lbfgs;
