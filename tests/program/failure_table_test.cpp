@@ -53,9 +53,10 @@ const Vector3d start(0.48, 0.6, 0.64);  // on the unit sphere
 const auto all_methods = {NloptMethod::slsqp, NloptMethod::auglag_lbfgs, NloptMethod::cobyla};
 
 OrbitAnswer solve(const Pattern& pattern, double gap, const OrbitRequest& request,
-                  const OrbitSolverOptions& options = {}) {
+                  OrbitSolverOptions options = {}) {
     nsma::Bar bar;
     bar.gap = gap;
+    options.bound_nodes = 0;  // verdicts are the subject here, not bounds
     return OrbitSolver(options).solve(bar, pattern_problem(pattern, bar.gap_sign()), request);
 }
 

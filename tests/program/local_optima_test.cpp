@@ -56,7 +56,10 @@ TEST_P(LocalOptima, AreFoundAndSettled) {
 
 // Single runs of NLopt and Ipopt stop at 192 at the first, where the answer is 144.
 INSTANTIATE_TEST_SUITE_P(Levels, LocalOptima,
-                         testing::Values(Case{{6, 18, 6}, 36.0, 1e-6}, Case{{8, 22, 10}, 48.0, 1e-6},
-                                         Case{{6, 22, 2}, 55.0, 0.1}, Case{{6, 20, 4}, 46.0, 0.1}));
+                         testing::Values(Case{{6, 18, 6}, 36.0, 1e-6}, Case{{8, 22, 10}, 48.0, 1e-6}));
+#ifndef __SANITIZE_ADDRESS__  // relaxations in dozens
+INSTANTIATE_TEST_SUITE_P(HarderLevels, LocalOptima,
+                         testing::Values(Case{{6, 22, 2}, 55.0, 0.1}, Case{{6, 20, 4}, 46.0, 0.1}));
+#endif
 
 }  // namespace
