@@ -38,6 +38,7 @@ public:
         switch (certificate_.claim) {
             case Certificate::Claim::trivial:
                 if (dimension_ != 0) invalid("claim: expected a kernel of dimension 0, got " + std::to_string(dimension_));
+                expect_no_energies("a trivial kernel");
                 return;
             case Certificate::Claim::empty: check_empty(); return;
             case Certificate::Claim::nonempty: check_nonempty(); return;
@@ -170,8 +171,15 @@ private:
         return result;
     }
 
+    void expect_no_energies(const char* of) const {
+        if (certificate_.energy_least || certificate_.energy_attained || certificate_.energy_bound) {
+            invalid(std::string("energies: expected none for ") + of);
+        }
+    }
+
     void check_empty() const {
         if (dimension_ == 0) invalid("claim: expected a nontrivial kernel, got dimension 0");
+        expect_no_energies("an empty set");
         if (certificate_.gap_sign == 0) {
             check_only_rest();
             return;
@@ -215,9 +223,7 @@ private:
     void check_nonempty() const {
         if (certificate_.gap_sign == 0) {
             check_ray();
-            if (certificate_.energy_least || certificate_.energy_attained || certificate_.energy_bound) {
-                invalid("energies: expected none for a closed gap");
-            }
+            expect_no_energies("a closed gap");
             return;
         }
         const Dense rho = projection();

@@ -18,11 +18,20 @@ using Point = Eigen::Map<const Eigen::VectorXd>;
 struct Call {
     const Program& program;
     nlopt::opt* optimiser = nullptr;
+    std::chrono::steady_clock::time_point deadline;
     std::exception_ptr failure;
     int evaluations = 0;
+    bool late = false;
 
     void fail(std::exception_ptr error) {
         if (!failure) failure = std::move(error);
+        optimiser->force_stop();
+    }
+    // The library looks at its own clock between iterations of its choice, and a local optimiser
+    // inside AUGLAG at none: every callback looks too, and the next check of the library ends it.
+    void look_at_the_clock() {
+        if (std::chrono::steady_clock::now() < deadline) return;
+        late = true;
         optimiser->force_stop();
     }
     void expect_finite(double value, const std::string& what) {
@@ -34,6 +43,7 @@ struct Call {
 double objective(unsigned n, const double* x, double* gradient, void* data) {
     auto& call = *static_cast<Call*>(data);
     ++call.evaluations;
+    call.look_at_the_clock();
     try {
         const Point point(x, n);
         if (gradient != nullptr) {
@@ -66,6 +76,7 @@ void write_rows(const SparseRows& rows, const Eigen::VectorXd& values, const Poi
 void inequalities(unsigned count, double* result, unsigned n, const double* x, double* gradient,
                   void* data) {
     auto& call = *static_cast<Call*>(data);
+    call.look_at_the_clock();
     try {
         write_rows(call.program.inequalities, call.program.inequality_values, Point(x, n), result,
                    gradient);
@@ -81,6 +92,7 @@ void inequalities(unsigned count, double* result, unsigned n, const double* x, d
 void equalities(unsigned count, double* result, unsigned n, const double* x, double* gradient,
                 void* data) {
     auto& call = *static_cast<Call*>(data);
+    call.look_at_the_clock();
     try {
         const Point point(x, n);
         const auto& program = call.program;
@@ -133,9 +145,19 @@ SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
                                     " finite values, got " + std::to_string(start.size()));
     }
     const auto n = static_cast<unsigned>(program.variables());
+    // At zero COBYLA never returns, and calls nothing that could stop it.
+    if (!(options.tolerance > 0)) {
+        throw std::invalid_argument("tolerance: expected > 0, got " + std::to_string(options.tolerance));
+    }
+    if (!(options.time_limit > 0)) {
+        throw std::invalid_argument("time_limit: expected > 0 s, got " + std::to_string(options.time_limit));
+    }
     const auto begin = std::chrono::steady_clock::now();
     nlopt::opt optimiser(algorithm(method), n);
-    Call call{program, &optimiser, nullptr, 0};
+    // Longer than a year is no limit, and would not fit the clock.
+    const std::chrono::duration<double> limit(std::min(options.time_limit, 3e7));
+    Call call{program, &optimiser, begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit),
+              nullptr, 0, false};
 
     const auto set_up = [&] {
         optimiser.set_lower_bounds(
@@ -193,6 +215,7 @@ SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
             outcome.status = error.what();  // a numerical outcome; anything else goes on up
         }
     }
+    if (call.late) outcome.status = "MAXTIME_REACHED";
     outcome.x = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
     outcome.iterations = call.evaluations;
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -314,6 +314,7 @@ private:
         }
         std::stable_sort(ranked.begin(), ranked.end(),
                          [](const Best* a, const Best* b) { return a->rank < b->rank; });
+        if (request_.objective == Objective::max_energy && take_vertex(ranked)) return;
         for (const Best* best : ranked) {
             accept(best->candidate);
             answer_.optimality = best->optimality;
@@ -328,6 +329,27 @@ private:
                 answer_.reason = "no solver answer was usable: polished segment point";
             }
         }
+    }
+
+    // The greatest energy is known from the proof of the interval; a solver may stop at a vertex
+    // below it. Takes the greatest vertex known where no solver came to it, and judges the gap of
+    // either by the proved bound.
+    bool take_vertex(const std::vector<Best*>& ranked) {
+        const auto& interval = answer_.interval;
+        if (!interval.greatest || !interval.bound) return false;
+        const auto& vertices = problem_.set.vertices;
+        Candidate candidate;
+        if (!vertices.empty()) candidate = {vertices.front(), "vertex"};
+        if (!ranked.empty() && (vertices.empty() || ranked.front()->rank <= rank(vertices.front()) * (1 - options_.agreement_tolerance))) {
+            candidate = ranked.front()->candidate;
+        }
+        if (candidate.method.empty()) return false;
+        accept(candidate);
+        Optimality optimality;
+        optimality.gap = std::max(0.0, *interval.bound / *answer_.energy - 1);
+        optimality.global = optimality.gap <= options_.agreement_tolerance;
+        answer_.optimality = optimality;
+        return answer_.verdict == Verdict::admissible;
     }
 
     // Where the Lagrangian leaves a gap: bounds the objective by relaxations, whose solutions are

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "one_line.hpp"
+
 #include "nsma/report/scene_file.hpp"
 
 namespace nsma {
@@ -63,8 +65,9 @@ public:
     [[noreturn]] void fail(const std::string& expected, const Json& got, const char* key = nullptr) const {
         std::string text = got.dump(-1, ' ', true, Json::error_handler_t::replace);
         if (text.size() > 60) text = text.substr(0, 57) + "...";
-        throw InputError(where_ + ": " + (key != nullptr ? std::string(key) + ": " : std::string()) +
-                         "expected " + expected + ", got " + text);
+        // An unknown key may hold anything.
+        throw InputError(one_line(where_ + ": " + (key != nullptr ? std::string(key) + ": " : std::string()) +
+                                  "expected " + expected + ", got " + text));
     }
 
     [[nodiscard]] const Json* optional(const char* key) {
