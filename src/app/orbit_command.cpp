@@ -13,7 +13,17 @@ std::string energy_text(double energy, bool closed) {
     return closed ? fmt::format("{:.10g} J", energy) : fmt::format("{:.10g} E_g", energy);
 }
 
-void print_text(const OrbitAnswer& answer, const Bar& bar) {
+// What presolve took from the conditions before any program was built.
+void print_presolve(const Reduction& reduction) {
+    const RemovalCounts& removed = reduction.removed;
+    fmt::print("presolve      {} unknowns and {} COND1 rows kept; classes removed: {} dead, {} in sign conflict, {} forced to zero;\n"
+               "              rows removed: {} COND2 duplicates, {} COND3 rows (now bounds), COND1: {} silent, {} implied, {} duplicate, {} dominated\n",
+               reduction.variables(), reduction.rows.rows(), removed.dead_classes, removed.sign_conflicts,
+               removed.forced_zero, removed.contact_duplicates, removed.force_rows, removed.silent_rows,
+               removed.implied_rows, removed.duplicate_rows, removed.dominated_rows);
+}
+
+void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar& bar) {
     const bool closed = answer.gap_sign == 0;
     const Pattern& pattern = answer.pattern;
     fmt::print("pattern       r = {}, p = {}, N = {}: m = {}, T/tau = {:.6g}, omega/omega_1 = {:.6g}\n",
@@ -32,6 +42,7 @@ void print_text(const OrbitAnswer& answer, const Bar& bar) {
         fmt::print("energies      {}{} to {}{}\n", energy_text(*answer.interval.least, closed),
                    exactly(answer.interval.least_exact), greatest, exactly(answer.interval.greatest_exact));
     }
+    if (answer.kernel_dimension > 0) print_presolve(reduction);
     if (!answer.orbit) return;
     fmt::print("energy        {} = {:.10g} J\n", energy_text(*answer.energy, closed), energy(*answer.orbit));
     fmt::print("objective     {} = {:.10g} (by {})\n", name(answer.objective), *answer.objective_value, answer.method);
@@ -88,11 +99,12 @@ int run(const OrbitArguments& arguments, const std::atomic<bool>&) {
         throw InputError("command line: --energy: expected joules (a closed gap has no least-energy orbit), got none");
     }
     OrbitSolver solver(arguments.solver);
-    const OrbitAnswer answer = solver.solve(scene.bar, pattern_problem(pattern, gap_sign), request);
+    const PatternProblem problem = pattern_problem(pattern, gap_sign);
+    const OrbitAnswer answer = solver.solve(scene.bar, problem, request);
     if (arguments.json) {
         fmt::print("{}\n", orbit_json(answer, scene.bar));
     } else {
-        print_text(answer, scene.bar);
+        print_text(answer, problem.set.reduction, scene.bar);
     }
     if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     switch (answer.verdict) {

@@ -422,17 +422,27 @@ private:
 
 }  // namespace
 
-CheckResult check(const Certificate& certificate) {
+namespace {
+
+// Empty when the four integers are within what the checker takes.
+std::string refusal(const Certificate& certificate) {
     const auto& pattern = certificate.pattern;
     if (pattern.cells < 1 || pattern.cells > checked_cells || pattern.free_steps < 1 ||
         pattern.contact_steps < 1 || pattern.free_steps > checked_steps ||
         pattern.contact_steps > checked_steps) {
-        return {false, "pattern: expected cells in 1.." + std::to_string(checked_cells) +
-                           " and steps in 1.." + std::to_string(checked_steps)};
+        return "pattern: expected cells in 1.." + std::to_string(checked_cells) +
+               " and steps in 1.." + std::to_string(checked_steps);
     }
     if (certificate.gap_sign < -1 || certificate.gap_sign > 1) {
-        return {false, "gap_sign: expected -1, 0 or 1, got " + std::to_string(certificate.gap_sign)};
+        return "gap_sign: expected -1, 0 or 1, got " + std::to_string(certificate.gap_sign);
     }
+    return {};
+}
+
+}  // namespace
+
+CheckResult check(const Certificate& certificate) {
+    if (auto reason = refusal(certificate); !reason.empty()) return {false, std::move(reason)};
     try {
         Checker(certificate).run();
     } catch (const Invalid& failure) {
@@ -442,6 +452,7 @@ CheckResult check(const Certificate& certificate) {
 }
 
 std::optional<Rational> proved_energy_bound(const Certificate& certificate) {
+    if (!refusal(certificate).empty()) return std::nullopt;
     try {
         return Checker(certificate).energy_bound();
     } catch (const Invalid&) {

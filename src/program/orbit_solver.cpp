@@ -312,13 +312,18 @@ private:
         for (Best* best : {&ipopt, &nlopt}) {
             if (best->usable) ranked.push_back(best);
         }
+        if (relaxed_.usable) ranked.push_back(&relaxed_);
         std::stable_sort(ranked.begin(), ranked.end(),
                          [](const Best* a, const Best* b) { return a->rank < b->rank; });
         if (request_.objective == Objective::max_energy && take_vertex(ranked)) return;
         for (const Best* best : ranked) {
             accept(best->candidate);
             answer_.optimality = best->optimality;
-            if (answer_.verdict == Verdict::admissible) return;
+            if (answer_.verdict != Verdict::admissible) continue;
+            if (best == &relaxed_ && !not_worse(ipopt, relaxed_) && !not_worse(nlopt, relaxed_)) {
+                no_solver_came("a relaxation");
+            }
+            return;
         }
         // Both failed: the segment still gives an orbit of this pattern at this level.
         if (const auto fallback = start(0)) {
@@ -329,6 +334,12 @@ private:
                 answer_.reason = "no solver answer was usable: polished segment point";
             }
         }
+    }
+
+    // The kept orbit is better than what any solver holds: they do not agree about it.
+    void no_solver_came(const std::string& origin) {
+        if (answer_.agreement != Agreement::both_failed) answer_.agreement = Agreement::different_optimum;
+        answer_.reason = "no solver came to the best orbit known, found by " + origin;
     }
 
     // The greatest energy is known from the proof of the interval; a solver may stop at a vertex
@@ -345,6 +356,10 @@ private:
         }
         if (candidate.method.empty()) return false;
         accept(candidate);
+        if (candidate.method == "vertex" && !ranked.empty() &&
+            ranked.front()->rank > rank(candidate.gamma) + options_.agreement_tolerance * std::abs(rank(candidate.gamma))) {
+            no_solver_came("the vertex search");
+        }
         Optimality optimality;
         optimality.gap = std::max(0.0, *interval.bound / *answer_.energy - 1);
         optimality.global = optimality.gap <= options_.agreement_tolerance;
@@ -359,7 +374,7 @@ private:
         Best* best = ipopt;
         if (best == nullptr || (nlopt != nullptr && nlopt->usable && nlopt->rank < best->rank)) best = nlopt;
         if (options_.bound_nodes < 1 || !best->usable || best->global || !level) return;
-        std::optional<Eigen::VectorXd> better;
+        std::optional<Polished> better;
         double objective = program.program.objective(program.point(best->candidate.gamma));
         ConicBoundOptions bounding;
         const bool large = reduction_.variables() > large_program;
@@ -370,21 +385,25 @@ private:
                 const Polished polished = polish(program.program, program.point(*near));
                 if (polished.feasible && polished.objective < objective * (1 - options_.agreement_tolerance)) {
                     objective = polished.objective;
-                    better = program.gamma(polished.x);
+                    better = polished;
                 }
             }
             return objective;
         };
         const ConicBound bound = conic_bound(program.program, objective, bounding);
         if (better) {
+            relaxed_.usable = true;
+            relaxed_.candidate = {program.gamma(better->x), "relaxation"};
+            relaxed_.rank = rank(relaxed_.candidate.gamma);
+            relaxed_.optimality = optimality_of(program, *better);
             for (Best* one : {ipopt, nlopt}) {
                 if (one == nullptr) continue;
                 const int number = next++;
-                const auto aside = aside_of(*better, level, level->start(number));
+                const auto aside = aside_of(relaxed_.candidate.gamma, level, level->start(number));
                 if (aside) attempt(program, level, *aside, one == ipopt ? "ipopt" : "nlopt-slsqp", number, *one, others);
             }
         }
-        for (Best* one : {ipopt, nlopt}) {
+        for (Best* one : {ipopt, nlopt, &relaxed_}) {
             if (one == nullptr || !one->usable) continue;
             one->optimality.nodes = bound.nodes;
             const double value = program.program.objective(program.point(one->candidate.gamma));
@@ -532,6 +551,7 @@ private:
     const OrbitRequest& request_;
     const Reduction& reduction_;
     Eigen::VectorXd reference_;
+    Best relaxed_;  // a better orbit that bounding came upon
     OrbitAnswer answer_;
 };
 

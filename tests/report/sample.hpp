@@ -43,7 +43,8 @@ inline OrbitAnswer least_energy_answer(const Bar& bar, const Pattern& pattern) {
     answer.method = "closed-form";
     answer.orbit = make_orbit(bar, kernel, bar.gap_sign() * row / row.squaredNorm());
     answer.energy = energy_ratio(*answer.orbit);
-    answer.interval = {answer.energy, *answer.energy * kernel.dimension(), false};
+    answer.interval.least = answer.energy;
+    answer.interval.greatest = *answer.energy * kernel.dimension();
     answer.replay = replay(*answer.orbit);
     answer.classification = classify(*answer.orbit);
     return answer;

@@ -20,8 +20,8 @@ using RationalVector = std::vector<std::pair<int, Rational>>;
 /// "12/11", "-3"; the inverse of parse_rational.
 [[nodiscard]] std::string to_string(const Rational& value);
 
-/// Reads an optional sign, digits and optionally "/digits" (not zero); absent on anything else
-/// or on more than `digit_limit` digits.
+/// Reads an optional minus sign, digits and optionally "/digits" (not zero); absent on anything else
+/// or on much more than `digit_limit` characters.
 [[nodiscard]] std::optional<Rational> parse_rational(const std::string& text,
                                                      std::size_t digit_limit = 20'000);
 

@@ -15,7 +15,7 @@ struct RemovalCounts {
     int dead_classes = 0;       ///< classes whose signs do not close up (zero in the kernel)
     int sign_conflicts = 0;     ///< live classes that COND3 bounds from both sides
     int forced_zero = 0;        ///< columns that a COND1 row of nonnegative terms forces to zero
-    int contact_duplicates = 0; ///< COND2 rows equal to the one kept (p, with row 0)
+    int contact_duplicates = 0; ///< COND2 rows equal to the one kept (p + 1, with row 0)
     int force_rows = 0;         ///< COND3 rows turned into bounds
     int silent_rows = 0;        ///< COND1 rows equal to the row before (nothing arrived)
     int implied_rows = 0;       ///< COND1 rows that a neighbour or the bounds imply
