@@ -228,11 +228,11 @@ Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundar
         tangent = null_space((basis.transpose() * boundary.on_sphere(x)).transpose(), k);
     }
     const Eigen::MatrixXd span = basis * tangent;
+    if (span.cols() == 0) return Eigen::VectorXd::Zero(x.size());  // a point: nothing to reduce over
     const Eigen::MatrixXd reduced = tangent.transpose() * hessian * tangent;
     const Eigen::LDLT<Eigen::MatrixXd> factor(reduced);
     const Eigen::VectorXd gradient = span.transpose() * program.objective_gradient(x);
     const double scale = std::max(reduced.cwiseAbs().maxCoeff(), 1e-300);
-    if (span.cols() == 0) return Eigen::VectorXd::Zero(x.size());
     if (factor.info() == Eigen::Success && (factor.vectorD().array() > 1e-12 * scale).all()) {
         return span * factor.solve(-gradient);
     }
