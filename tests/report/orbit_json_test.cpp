@@ -50,10 +50,15 @@ TEST(OrbitJson, HasEveryAgreedField) {
                             "reason",
                             "method",
                             "level",
-                            "classification"}) {
+                            "classification",
+                            "verdict_proved",
+                            "energy_min_exact",
+                            "energy_max_exact",
+                            "energy_bound",
+                            "optimality"}) {
         EXPECT_TRUE(json.contains(key)) << key;
     }
-    EXPECT_EQ(json.size(), 23U);
+    EXPECT_EQ(json.size(), 28U);
     EXPECT_THAT(keys(json["objective"]), testing::ElementsAre("name", "value"));
     EXPECT_THAT(keys(json["violations"]),
                 testing::ElementsAre("periodicity", "cond1", "cond2", "cond3", "energy"));

@@ -44,7 +44,7 @@ TEST(Tables, AClosedGapHasNoRatios) {
     PatternRecord record = admissible_record();
     record.gap_sign = 0;
     EXPECT_EQ(scan_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,");
-    EXPECT_EQ(patterns_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,,9,36,false,");
+    EXPECT_EQ(patterns_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,,9,36,false,false,,,,");
 }
 
 TEST(Tables, EveryRowHasAsManyFieldsAsItsHeader) {
@@ -58,7 +58,7 @@ TEST(Tables, EveryRowHasAsManyFieldsAsItsHeader) {
     answer.reason = "a, b \"c\"\nd";
     const std::string row = levels_csv_row(bar, answer);
     EXPECT_EQ(fields(row), fields(levels_csv_header()));
-    EXPECT_THAT(row, testing::EndsWith(",Solve_Succeeded,1.5,XTOL_REACHED,"));
+    EXPECT_THAT(row, testing::EndsWith(",Solve_Succeeded,1.5,XTOL_REACHED,,false,,,,"));
     EXPECT_EQ(csv_fields(row)[10], "a, b \"c\" d");
     const auto timings = timings_csv_rows(answer);
     ASSERT_EQ(timings.size(), 3U);
