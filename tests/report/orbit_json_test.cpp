@@ -94,7 +94,7 @@ TEST(OrbitJson, AnswersWithoutAnOrbitKeepTheFields) {
     answer.level = 1.0;
     answer.reason = "level 1 < 25";
     const Json json = Json::parse(orbit_json(answer, Bar{}));
-    EXPECT_EQ(json.size(), 23U);
+    EXPECT_EQ(json.size(), 28U);
     EXPECT_EQ(json["verdict"], "below");
     EXPECT_TRUE(json["energy_ratio"].is_null());
     EXPECT_TRUE(json["violations"]["periodicity"].is_null());
