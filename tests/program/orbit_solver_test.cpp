@@ -323,6 +323,12 @@ TEST(OrbitSolver, ManyLevelsOfManyPatternsAreSound) {
     EXPECT_GT(solved, 200);
 }
 
+// Polishing came to a point that its active rows and the sphere determine alone, and crashed.
+TEST(OrbitSolver, ActiveRowsMayDetermineTheOrbit) {
+    const auto answer = solve({20, 46, 18}, 1, {.level = 100.0, .reference = {}}, unbounded());
+    expect_sound(answer);
+}
+
 TEST(OrbitSolver, Misuse) {
     OrbitSolver solver;
     const auto problem = pattern_problem({6, 16, 4}, 1);

@@ -31,7 +31,9 @@ TEST(Tables, ScanHasTheAgreedColumns) {
 
 TEST(Tables, NoValueIsAnEmptyField) {
     PatternRecord record = admissible_record();
-    record.interval = {9.0, std::nullopt, true};
+    record.interval = nsma::EnergyInterval{};
+    record.interval.least = 9.0;
+    record.interval.unbounded = true;
     EXPECT_EQ(scan_csv_row(Bar{}, record), "6,1,16,4,20,4,1.2,admissible,9,");
     record.verdict = Verdict::inadmissible;
     record.interval = {};
