@@ -141,7 +141,9 @@ struct SweepStore::Implementation {
         file = path;
         guarded("opened", [&] {
             const int flags = write ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE : SQLite::OPEN_READONLY;
-            database = std::make_unique<SQLite::Database>(file.string(), flags);
+            // A process that just ended may still be letting go of the file.
+            constexpr int patience = 3000;  // ms
+            database = std::make_unique<SQLite::Database>(file.string(), flags, patience);
             if (!write) return;
             // One writer, no shared memory: also safe on a network file system.
             database->exec("PRAGMA locking_mode=EXCLUSIVE");

@@ -18,7 +18,8 @@ PatternRecord admissible_record() {
     record.pattern = {6, 16, 4};
     record.kernel_dimension = 4;
     record.verdict = Verdict::admissible;
-    record.interval = {9.0, 36.0, false};
+    record.interval.least = 9.0;
+    record.interval.greatest = 36.0;
     return record;
 }
 
