@@ -288,7 +288,7 @@ TEST(OrbitSolver, TwoRunsGiveTheSameBits) {
     for (const auto& pattern : {Pattern{20, 48, 16}, {6, 23, 1}}) {
         const OrbitRequest request{.level = 2.2 * least_energy(pattern, 1), .reference = {}};
         const auto a = solve(pattern, 1, request);
-        OrbitSolver used;
+        OrbitSolver used(usual());
         const auto problem = pattern_problem(pattern, 1);
         (void)used.solve(bar_with_gap(1), problem, {.level = 1.7 * least_energy(pattern, 1), .reference = {}});
         const auto b = used.solve(bar_with_gap(1), problem, request);  // on an object with a past
