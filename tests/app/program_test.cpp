@@ -493,7 +493,8 @@ TEST_F(Program, InterruptedSweepKeepsReadableRows) {
         EXPECT_EQ(commas, columns) << line;
         ++rows;
     }
-    EXPECT_GT(rows, 4U);
+    // How far it came depends on the machine; what a kill loses is tested with the store.
+    EXPECT_GE(rows, 1U);
     for (const auto& line : lines_of(contents(out / "orbits.jsonl"))) EXPECT_TRUE(json::accept(line));
     EXPECT_EQ(contents(out / "levels.csv").back(), '\n');
 }
