@@ -31,8 +31,15 @@ Bar bar_with_gap(double gap) {
     return bar;
 }
 
+/// The cross-check; proofs without it are tested below.
+OrbitSolverOptions both_solvers() {
+    OrbitSolverOptions options;
+    options.solvers = SolverChoice::both;
+    return options;
+}
+
 OrbitAnswer solve(const Pattern& pattern, double gap, const OrbitRequest& request,
-                  const OrbitSolverOptions& options = {}) {
+                  const OrbitSolverOptions& options = both_solvers()) {
     const Bar bar = bar_with_gap(gap);
     return OrbitSolver(options).solve(bar, pattern_problem(pattern, bar.gap_sign()), request);
 }
@@ -254,8 +261,23 @@ TEST(OrbitSolver, OneSolverAlone) {
     }
 }
 
+TEST(OrbitSolver, ProofNeedsNoSolverWhereTheSegmentPointIsProvedBest) {
+    const Pattern pattern{20, 48, 16};
+    for (const double factor : {1.01, 1.5, 3.0, 7.9}) {
+        const OrbitRequest request{.level = factor * least_energy(pattern, 1), .reference = {}};
+        const auto both = solve(pattern, 1, request);
+        const auto proof = solve(pattern, 1, request, {});
+        expect_sound(proof);
+        // Not above the cross-checked answer by more than the agreement asked for.
+        EXPECT_LE(*proof.objective_value, *both.objective_value * (1 + 1e-6));
+        if (proof.method != "segment") continue;
+        EXPECT_EQ(proof.agreement, Agreement::not_needed);
+        EXPECT_TRUE(proof.optimality && proof.optimality->global);
+    }
+}
+
 TEST(OrbitSolver, StarvedSolversStillGiveAnOrbitAndSaySo) {
-    OrbitSolverOptions options;
+    OrbitSolverOptions options = both_solvers();
     options.solver.max_iterations = 1;
     options.solver.time_limit = 1e-9;
     options.raw_violation = -1;  // no raw answer is good enough
@@ -272,7 +294,7 @@ TEST(OrbitSolver, TwoRunsGiveTheSameBits) {
     for (const auto& pattern : {Pattern{20, 48, 16}, {6, 23, 1}}) {
         const OrbitRequest request{.level = 2.2 * least_energy(pattern, 1), .reference = {}};
         const auto a = solve(pattern, 1, request);
-        OrbitSolver used;
+        OrbitSolver used(both_solvers());
         const auto problem = pattern_problem(pattern, 1);
         (void)used.solve(bar_with_gap(1), problem, {.level = 1.7 * least_energy(pattern, 1), .reference = {}});
         const auto b = used.solve(bar_with_gap(1), problem, request);  // on an object with a past
