@@ -62,12 +62,13 @@ std::string program_style(const std::string& label) {
     const auto point = [&](int hollow, const char* colour) {
         return fmt::format("points pt {} ps {}*mark lw 1.6 lc rgb '{}'", polished ? hollow + 1 : hollow, warm ? 0.8 : 1.3, colour);
     };
+    if (label.rfind("Ipopt lifted", 0) == 0) return point(14, "#0072b2");
     if (label.rfind("Ipopt", 0) == 0) return point(6, warm ? "#56b4e9" : "#0072b2");
     if (label.rfind("SLSQP", 0) == 0) return point(8, "#b8500a");
     if (label.rfind("AUGLAG+LBFGS", 0) == 0) return point(4, "#009e73");
     if (label.rfind("AUGLAG+SLSQP", 0) == 0) return point(12, "#7a5195");
     if (label.rfind("COBYLA", 0) == 0) return point(10, "#777777");
-    return point(14, "#aaaaaa");
+    return polished ? "points pt 16 ps 1.3*mark lc rgb '#aaaaaa'" : "points pt 1 ps 1.3*mark lw 1.6 lc rgb '#aaaaaa'";
 }
 
 Chart program_chart(const AccuracyResults& results) {

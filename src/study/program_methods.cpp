@@ -10,6 +10,7 @@
 
 #include "guarded_solver.hpp"
 #include "nsma/program/conic_bound.hpp"
+#include "nsma/program/lifted_program.hpp"
 #include "nsma/program/polish.hpp"
 #include "nsma/program/restore.hpp"
 
@@ -111,6 +112,9 @@ std::vector<ProgramMethod> program_methods(bool quick) {
             }
         }
     }
+    for (const bool polish : {false, true}) {
+        methods.push_back({Kind::ipopt, NloptMethod::slsqp, "Ipopt lifted", 1e-8, polish, false, true});
+    }
     const auto add = [&](NloptMethod method, const char* label, const std::vector<double>& at) {
         for (const double tolerance : at) {
             for (const bool polish : {false, true}) {
@@ -199,11 +203,15 @@ MethodRunner::MethodRunner(const ProgramMethod& method, double time_limit) : met
     if (method.kind == ProgramMethod::Kind::ipopt) ipopt_ = std::make_unique<IpoptSolver>(options_);
 }
 
-SolverOutcome MethodRunner::call(const Program& posed, const Eigen::VectorXd& start) {
+SolverOutcome MethodRunner::call(const ProgramCase& on, const Program& posed, const Eigen::VectorXd& start) {
     if (method_.kind == ProgramMethod::Kind::segment) return {start, "segment", 0, 0.0};
     const double begin = cpu_seconds();
     SolverOutcome outcome;
-    if (method_.kind == ProgramMethod::Kind::ipopt) {
+    if (method_.lifted) {
+        const LiftedProgram lifted = lifted_program(on.program, on.problem.set.reduction, on.problem.kernel);
+        outcome = ipopt_->solve(lifted.program, lifted.point(start));
+        outcome.x.conservativeResize(start.size());
+    } else if (method_.kind == ProgramMethod::Kind::ipopt) {
         outcome = ipopt_->solve(posed, start);
     } else if (method_.nlopt == NloptMethod::cobyla || method_.nlopt == NloptMethod::isres) {
         return solve_guarded(method_.nlopt, posed, start, options_, 2 * options_.time_limit + 1);
@@ -228,7 +236,7 @@ Trial MethodRunner::run(const ProgramCase& on, const Program& posed, const Eigen
         trial.certified = answer.optimality && answer.optimality->global;
         orbit = answer.orbit;
     } else {
-        const SolverOutcome outcome = call(posed, method_.warm ? on.warm_x : start);
+        const SolverOutcome outcome = call(on, posed, method_.warm ? on.warm_x : start);
         trial.seconds = outcome.seconds;
         trial.status = outcome.status;
         trial.iterations = outcome.iterations;

@@ -26,6 +26,7 @@ struct ProgramMethod {
     double tolerance = 1e-8;
     bool polish = false;  ///< restore and polish the raw answer, and bound the objective
     bool warm = false;    ///< start at the optimum of a level 2 % away
+    bool lifted = false;  ///< Ipopt: with the tip displacements as unknowns (lifted_program.hpp)
 
     /// Brings its own start and poses the program itself.
     [[nodiscard]] bool whole() const { return kind == Kind::default_path || kind == Kind::cross_check; }
@@ -85,7 +86,7 @@ public:
     [[nodiscard]] const ProgramMethod& method() const { return method_; }
 
 private:
-    [[nodiscard]] SolverOutcome call(const Program& posed, const Eigen::VectorXd& start);
+    [[nodiscard]] SolverOutcome call(const ProgramCase& on, const Program& posed, const Eigen::VectorXd& start);
 
     ProgramMethod method_;
     SolverOptions options_;
