@@ -57,7 +57,7 @@ std::string program_style(const std::string& label) {
     const bool polished = label.find("polished") != std::string::npos;
     const bool warm = label.find("warm") != std::string::npos;
     if (label == "default") return "points pt 3 ps 2.2*mark lw 2.5 lc rgb '#000000'";
-    if (label == "cross-check") return "points pt 1 ps 2.0*mark lw 2.5 lc rgb '#000000'";
+    if (label == "proof first") return "points pt 1 ps 2.0*mark lw 2.5 lc rgb '#000000'";
     if (label == "segment") return "points pt 2 ps 1.6*mark lw 2.5 lc rgb '#d55e00'";
     const auto point = [&](int hollow, const char* colour) {
         return fmt::format("points pt {} ps {}*mark lw 1.6 lc rgb '{}'", polished ? hollow + 1 : hollow, warm ? 0.8 : 1.3, colour);

@@ -64,7 +64,7 @@ ProgramRecord measure(const ProgramMethod& method, const std::vector<ProgramCase
 
 AccuracySizes accuracy_sizes(const AccuracyOptions& options) {
     if (options.quick) return {{2, 8}, {2, 8}, {5, 10, 20}, {2, 8}, {10, 100}, 10, 1, 2};
-    return {{2, 8, 32, 128},       {2, 4, 8, 16},         {5, 10, 20, 40, 80, 160, 320},
+    return {{2, 8, 32},            {2, 4, 8, 16},         {5, 10, 20, 40, 80, 160, 320},
             {2, 8, 32, 64},        {10, 1'000, 100'000},  20,
             5,                     3};
 }

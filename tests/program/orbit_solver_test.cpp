@@ -266,7 +266,9 @@ TEST(OrbitSolver, ProofNeedsNoSolverWhereTheSegmentPointIsProvedBest) {
     for (const double factor : {1.01, 1.5, 3.0, 7.9}) {
         const OrbitRequest request{.level = factor * least_energy(pattern, 1), .reference = {}};
         const auto both = solve(pattern, 1, request);
-        const auto proof = solve(pattern, 1, request, {});
+        OrbitSolverOptions first_proof;
+        first_proof.solvers = SolverChoice::proof;
+        const auto proof = solve(pattern, 1, request, first_proof);
         expect_sound(proof);
         // Not above the cross-checked answer by more than the agreement asked for.
         EXPECT_LE(*proof.objective_value, *both.objective_value * (1 + 1e-6));

@@ -72,7 +72,7 @@ TEST(Accuracy, QuickRunEndToEnd) {
         EXPECT_EQ(record.succeeded, record.runs);
         EXPECT_LE(record.error, 1e-9);
     }
-    EXPECT_EQ(methods, (std::set<std::string>{"default", "cross-check", "segment", "Ipopt", "Ipopt lifted", "SLSQP", "AUGLAG+LBFGS",
+    EXPECT_EQ(methods, (std::set<std::string>{"default", "proof first", "segment", "Ipopt", "Ipopt lifted", "SLSQP", "AUGLAG+LBFGS",
                                               "AUGLAG+SLSQP", "COBYLA", "ISRES"}));
     for (const auto& record : seen.kernels) {
         // Divide and conquer loses vectors of repeated singular values in some versions of Eigen.
@@ -100,7 +100,7 @@ TEST(Accuracy, QuickRunEndToEnd) {
             EXPECT_TRUE(record.proved) << record.size << ' ' << record.difficulty;
         }
         // Where an answer is proved to exist the default path finds it.
-        if (record.method == "default" || record.method == "cross-check") {
+        if (record.method == "default" || record.method == "proof first") {
             EXPECT_EQ(record.outcomes[0], record.runs) << record.map << ' ' << record.difficulty;
         }
         EXPECT_LE(record.false_success, record.reported);

@@ -15,7 +15,7 @@ namespace nsma {
 struct ProgramMethod {
     enum class Kind {
         default_path,  ///< OrbitSolver with its defaults
-        cross_check,   ///< OrbitSolver with both solvers against each other
+        proof,         ///< OrbitSolver until an answer is proved, without a cross-check
         segment,       ///< the admissible point of a segment, polished; no solver
         ipopt,
         nlopt
@@ -29,7 +29,7 @@ struct ProgramMethod {
     bool lifted = false;  ///< Ipopt: with the tip displacements as unknowns (lifted_program.hpp)
 
     /// Brings its own start and poses the program itself.
-    [[nodiscard]] bool whole() const { return kind == Kind::default_path || kind == Kind::cross_check; }
+    [[nodiscard]] bool whole() const { return kind == Kind::default_path || kind == Kind::proof; }
     [[nodiscard]] std::string setting() const;  ///< e.g. "tol 1e-08, polish"
 };
 
