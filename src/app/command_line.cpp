@@ -77,11 +77,11 @@ void add_quiet(CLI::App& command, bool& quiet) {
 struct SolverWords {
     std::string solver = "both";
     void add(CLI::App& command, OrbitSolverOptions& options) {
-        command.add_option("--solver", solver, "ipopt, nlopt or both (default)")
+        command.add_option("--solver", solver, "ipopt, nlopt, both against each other (default), or proof: no cross-check where the polished answer is proved the best")
             ->check(CLI::Validator(
                 [](const std::string& text) -> std::string {
-                    if (text == "ipopt" || text == "nlopt" || text == "both") return {};
-                    return "expected ipopt, nlopt or both, got " + text;
+                    if (text == "ipopt" || text == "nlopt" || text == "both" || text == "proof") return {};
+                    return "expected ipopt, nlopt, both or proof, got " + text;
                 },
                 "NAME"));
         command.add_option("--starts", options.starts,
@@ -93,7 +93,8 @@ struct SolverWords {
     }
     [[nodiscard]] SolverChoice choice() const {
         if (solver == "ipopt") return SolverChoice::ipopt;
-        return solver == "nlopt" ? SolverChoice::nlopt : SolverChoice::both;
+        if (solver == "nlopt") return SolverChoice::nlopt;
+        return solver == "proof" ? SolverChoice::proof : SolverChoice::both;
     }
 };
 
@@ -177,6 +178,14 @@ Arguments parse(int count, const char* const* words) {
     export_command->add_option("DIR", exported.folder, "folder of a sweep")->required();
     export_command->footer("Example:\n  nsma export out/first-mode");
 
+    AccuracyArguments accuracy;
+    auto* accuracy_command = app.add_subcommand("accuracy", "speed against accuracy: every method on the same work, and where each fails");
+    accuracy_command->add_option("SCENE", accuracy.scene_file, "scene file (TOML)")->required();
+    accuracy_command->add_option("--out", accuracy.out, "folder for the results; made if missing")->required();
+    accuracy_command->add_flag("--quick", accuracy.quick, "small sizes and few runs: seconds instead of minutes");
+    add_quiet(*accuracy_command, accuracy.quiet);
+    accuracy_command->footer("Example:\n  nsma accuracy problems/first-mode.toml --out out/accuracy");
+
     PlotArguments plot;
     auto* plot_command = app.add_subcommand("plot", "draw the charts of a stored sweep again");
     plot_command->add_option("DIR", plot.folder, "folder of a sweep")->required();
@@ -203,7 +212,7 @@ Arguments parse(int count, const char* const* words) {
     check_command->add_option("FILE", check.file, "certificates written by nsma prove")->required();
     check_command->footer("Example:\n  nsma check proofs.jsonl");
 
-    for (auto* command : {scan_command, orbit_command, sweep_command, export_command, plot_command, prove_command, check_command}) {
+    for (auto* command : {scan_command, orbit_command, sweep_command, accuracy_command, export_command, plot_command, prove_command, check_command}) {
         command->failure_message(CLI::FailureMessage::simple);
     }
     try {
@@ -239,6 +248,7 @@ Arguments parse(int count, const char* const* words) {
     }
     if (*check_command) return check;
     if (*export_command) return exported;
+    if (*accuracy_command) return accuracy;
     return plot;
 }
 

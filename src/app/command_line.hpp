@@ -48,6 +48,13 @@ struct ExportArguments {
     std::string folder;
 };
 
+struct AccuracyArguments {
+    std::string scene_file;
+    std::string out;
+    bool quick = false;
+    bool quiet = false;
+};
+
 struct PlotArguments {
     std::string folder;
     bool quiet = false;
@@ -72,8 +79,8 @@ struct TextArguments {
 };
 
 using Arguments =
-    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, ExportArguments, PlotArguments,
-                 ProveArguments, CheckArguments>;
+    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, ExportArguments, AccuracyArguments,
+                 PlotArguments, ProveArguments, CheckArguments>;
 
 /// Versions of the program and its solvers, one line.
 [[nodiscard]] std::string version();

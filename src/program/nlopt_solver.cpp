@@ -117,8 +117,10 @@ void equalities(unsigned count, double* result, unsigned n, const double* x, dou
 nlopt::algorithm algorithm(NloptMethod method) {
     switch (method) {
         case NloptMethod::slsqp: return nlopt::LD_SLSQP;
-        case NloptMethod::auglag_lbfgs: return nlopt::AUGLAG;
+        case NloptMethod::auglag_lbfgs:
+        case NloptMethod::auglag_slsqp: return nlopt::AUGLAG;
         case NloptMethod::cobyla: return nlopt::LN_COBYLA;
+        case NloptMethod::isres: return nlopt::GN_ISRES;
     }
     throw std::invalid_argument("method: expected a method of NLopt");
 }
@@ -160,10 +162,16 @@ SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
               nullptr, 0, false};
 
     const auto set_up = [&] {
-        optimiser.set_lower_bounds(
-            std::vector<double>(program.lower.data(), program.lower.data() + n));
-        optimiser.set_upper_bounds(
-            std::vector<double>(program.upper.data(), program.upper.data() + n));
+        std::vector<double> lower(program.lower.data(), program.lower.data() + n);
+        std::vector<double> upper(program.upper.data(), program.upper.data() + n);
+        if (method == NloptMethod::isres && program.sphere_variables > 0) {
+            // On the unit sphere no unknown exceeds one; the peak force does not either.
+            for (auto& bound : lower) bound = std::max(bound, -1.0);
+            for (auto& bound : upper) bound = std::min(bound, 1.0);
+            nlopt::srand(1);  // the same answer in every run
+        }
+        optimiser.set_lower_bounds(lower);
+        optimiser.set_upper_bounds(upper);
         optimiser.set_min_objective(objective, &call);
         if (program.inequalities.rows() > 0) {
             const std::vector<double> tolerance(static_cast<std::size_t>(program.inequalities.rows()),
@@ -180,8 +188,9 @@ SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
         optimiser.set_ftol_rel(options.tolerance * 1e-2);
         optimiser.set_maxeval(10 * options.max_iterations);
         optimiser.set_maxtime(options.time_limit);
-        if (method == NloptMethod::auglag_lbfgs) {
-            nlopt::opt local(nlopt::LD_LBFGS, n);  // AUGLAG without a local optimiser crashes
+        if (method == NloptMethod::auglag_lbfgs || method == NloptMethod::auglag_slsqp) {
+            const bool lbfgs = method == NloptMethod::auglag_lbfgs;
+            nlopt::opt local(lbfgs ? nlopt::LD_LBFGS : nlopt::LD_SLSQP, n);  // AUGLAG without a local optimiser crashes
             local.set_xtol_rel(options.tolerance);
             local.set_ftol_rel(options.tolerance * 1e-2);
             local.set_maxeval(10 * options.max_iterations);

@@ -12,6 +12,7 @@
 #include "nsma/program/lifted_program.hpp"
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/polish.hpp"
+#include "nsma/program/restore.hpp"
 
 namespace nsma {
 namespace {
@@ -64,34 +65,6 @@ std::vector<Eigen::VectorXd> line_points(const Reduction& reduction, double leve
         points.push_back(std::move(point));
     }
     return points;
-}
-
-// Brings the raw answer of a solver to an admissible point on the level, nearby.
-std::optional<Eigen::VectorXd> restored(const OrbitProgram& orbit_program, const AdmissibleSet& set,
-                                        const LevelPoints* level, const Eigen::VectorXd& raw) {
-    const auto& program = orbit_program.program;
-    Eigen::VectorXd x = raw.cwiseMax(program.lower).cwiseMin(program.upper);
-    Eigen::VectorXd gamma = orbit_program.gamma(x);
-    const Eigen::VectorXd w = set.reduction.contact_row.cast<double>();
-    const Eigen::VectorXd centre = level != nullptr ? level->centre() : set.least;
-    // Onto COND2, then toward the centre until no row is crossed.
-    if (w.squaredNorm() > 0) gamma += w * ((set.reduction.gap_sign - w.dot(gamma)) / w.squaredNorm());
-    double blend = 0;
-    const auto need = [&](double excess, double centre_slack) {
-        if (excess <= 0) return;
-        blend = std::max(blend, centre_slack > 0 ? excess / (excess + centre_slack) : 1.0);
-    };
-    const Eigen::MatrixXd rows = set.reduction.rows.cast<double>();
-    const Eigen::VectorXd values = rows * gamma;
-    const Eigen::VectorXd slacks = -(rows * centre);
-    const double rounding = row_rounding * gamma.lpNorm<1>();
-    for (Eigen::Index i = 0; i < values.size(); ++i) need(values[i] - rounding, slacks[i]);
-    for (Eigen::Index j = 0; j < gamma.size(); ++j) {
-        if (set.reduction.bounded[static_cast<std::size_t>(j)] != 0) need(-gamma[j], centre[j]);
-    }
-    if (blend > 0) gamma += std::min(blend, 1.0) * (centre - gamma);
-    if (level == nullptr) return gamma;
-    return level->reach(gamma);
 }
 
 class Solve {
@@ -263,6 +236,8 @@ private:
             return vertices[static_cast<std::size_t>(k) % vertices.size()];
         };
 
+        if (options_.solvers == SolverChoice::proof && proved_segment(program, level, start(0))) return;
+
         Best ipopt;
         Best nlopt;
         const bool with_ipopt = options_.solvers != SolverChoice::nlopt;
@@ -281,6 +256,12 @@ private:
             }
         };
         if (with_nlopt) search_with_nlopt();
+        if (options_.solvers == SolverChoice::proof && nlopt.usable) {
+            settle(program, level, nullptr, &nlopt, next, others);
+            std::vector<SolverRun> runs{nlopt.run};
+            runs.insert(runs.end(), others.begin(), others.end());
+            if (accept_proved(nlopt, std::move(runs))) return;
+        }
         for (int k = 0; with_ipopt && k < options_.starts && !ipopt.global; ++k) {
             const int number = k == 0 ? 0 : next++;
             const auto begin = start(number);
@@ -364,6 +345,31 @@ private:
         optimality.gap = std::max(0.0, *interval.bound / *answer_.energy - 1);
         optimality.global = optimality.gap <= options_.agreement_tolerance;
         answer_.optimality = optimality;
+        return answer_.verdict == Verdict::admissible;
+    }
+
+    // The point of a segment, polished: an answer without a solver where it is proved the best.
+    bool proved_segment(const OrbitProgram& program, const std::optional<LevelPoints>& level,
+                        const std::optional<Eigen::VectorXd>& start) {
+        if (!start) return false;
+        const Polished polished = polish(program.program, program.point(*start));
+        if (!polished.feasible) return false;
+        Best segment;
+        segment.usable = true;
+        segment.candidate = {program.gamma(polished.x), "segment"};
+        segment.rank = rank(segment.candidate.gamma);
+        segment.optimality = optimality_of(program, polished);
+        segment.global = segment.optimality.global;
+        return accept_proved(segment, {});
+    }
+
+    // Ends the search with an answer proved to be the best; false where it is not.
+    bool accept_proved(const Best& best, std::vector<SolverRun> runs) {
+        if (!best.usable || !best.global) return false;
+        answer_.agreement = Agreement::not_needed;
+        accept(best.candidate);
+        answer_.optimality = best.optimality;
+        answer_.solvers = std::move(runs);
         return answer_.verdict == Verdict::admissible;
     }
 

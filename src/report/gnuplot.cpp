@@ -27,9 +27,9 @@ constexpr const char* script_head = R"(# Drawn by nsma; draw again with: gnuplot
 set encoding utf8
 do for [format in "svg png"] {{
 if (format eq "svg") {{
-    set terminal svg size 1000,625 font 'sans-serif,14' linewidth 1 enhanced background rgb 'white'
+    set terminal svg size 1000,{1} font 'sans-serif,14' linewidth 1 enhanced background rgb 'white'
 }} else {{
-    set terminal pngcairo size 1600,1000 font 'sans-serif,14' fontscale 1.5 linewidth 1.6 pointscale 1.6 enhanced
+    set terminal pngcairo size 1600,{2} font 'sans-serif,14' fontscale 1.5 linewidth 1.6 pointscale 1.6 enhanced
 }}
 set output '{0}.'.format
 reset
@@ -116,7 +116,8 @@ void draw_chart(const Chart& chart, const fs::path& folder) {
             one_line(fmt::format("{}: cannot be made: {}", folder.string(), code.message())));
     const std::string script = chart.name + ".gp";
     write_file(folder / (chart.name + ".dat"), chart.data);
-    write_file(folder / script, fmt::format(fmt::runtime(script_head), chart.name) +
+    write_file(folder / script, fmt::format(fmt::runtime(script_head), chart.name, chart.height,
+                                                chart.height * 8 / 5) +
                                     chart.commands + "unset output\n}\n");
     for (const char* format : {".svg", ".png"})
         fs::remove(folder / (chart.name + format), code);

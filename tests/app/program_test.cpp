@@ -499,4 +499,26 @@ TEST_F(Program, InterruptedSweepKeepsReadableRows) {
     EXPECT_EQ(contents(out / "levels.csv").back(), '\n');
 }
 
+TEST_F(Program, AccuracyStudyRunsQuicklyAndRefusesWhatItCannotStudy) {
+    const std::string out = (folder_ / "accuracy").string();
+    const std::string closed = write("closed.toml", scene_text("0.0"));
+    for (const auto& words : std::vector<std::vector<std::string>>{{"accuracy", closed, "--out", out},
+                                                                   {"accuracy", scene_},
+                                                                   {"accuracy", scene_, "--out", scene_},
+                                                                   {"accuracy", scene_, "--out", out, "--quick=maybe"}}) {
+        const Result result = run(words);
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_EQ(lines_of(result.err).size(), 1U) << result.err;
+    }
+    const Result done = run({"accuracy", scene_, "--out", out, "--quick", "--quiet"});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_TRUE(done.err.empty()) << done.err;
+    for (const char* file : {"programs.csv", "stability.csv", "causes.csv", "winners.csv", "machine.txt", "charts/accuracy-programs.png"}) {
+        EXPECT_TRUE(fs::exists(fs::path(out) / file)) << file;
+    }
+    // Results of one scene only.
+    const std::string other = write("other.toml", scene_text("1.0", "7"));
+    EXPECT_EQ(run({"accuracy", other, "--out", out, "--quick", "--quiet"}).exit_code, 2);
+}
+
 }  // namespace

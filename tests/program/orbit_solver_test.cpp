@@ -270,8 +270,25 @@ TEST(OrbitSolver, OneSolverAlone) {
     }
 }
 
+TEST(OrbitSolver, ProofNeedsNoSolverWhereTheSegmentPointIsProvedBest) {
+    const Pattern pattern{20, 48, 16};
+    for (const double factor : {1.01, 1.5, 3.0, 7.9}) {
+        const OrbitRequest request{.level = factor * least_energy(pattern, 1), .reference = {}};
+        const auto both = solve(pattern, 1, request);
+        OrbitSolverOptions first_proof;
+        first_proof.solvers = SolverChoice::proof;
+        const auto proof = solve(pattern, 1, request, first_proof);
+        expect_sound(proof);
+        // Not above the cross-checked answer by more than the agreement asked for.
+        EXPECT_LE(*proof.objective_value, *both.objective_value * (1 + 1e-6));
+        if (proof.method != "segment") continue;
+        EXPECT_EQ(proof.agreement, Agreement::not_needed);
+        EXPECT_TRUE(proof.optimality && proof.optimality->global);
+    }
+}
+
 TEST(OrbitSolver, StarvedSolversStillGiveAnOrbitAndSaySo) {
-    OrbitSolverOptions options;
+    OrbitSolverOptions options = usual();
     options.solver.max_iterations = 1;
     options.solver.time_limit = 1e-9;
     options.raw_violation = -1;  // no raw answer is good enough

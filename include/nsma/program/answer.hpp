@@ -39,7 +39,7 @@ struct SolverRun {
 
 /// The two solvers against each other.
 enum class Agreement {
-    not_needed,         ///< closed form: no solver was called
+    not_needed,         ///< closed form, or an answer proved the best before a second solver
     agree,              ///< both usable, objectives within tolerance
     different_optimum,  ///< both usable, objectives differ
     one_failed,

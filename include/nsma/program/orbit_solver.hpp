@@ -29,7 +29,12 @@ struct PatternOptions {
 [[nodiscard]] PatternProblem pattern_problem(const Pattern& pattern, int gap_sign,
                                              const PatternOptions& options = {});
 
-enum class SolverChoice { ipopt, nlopt, both };
+enum class SolverChoice {
+    ipopt,
+    nlopt,
+    both,  ///< each against the other
+    proof  ///< until an answer is proved the best: polished segment point, NLopt, then both
+};
 
 struct OrbitSolverOptions {
     SolverChoice solvers = SolverChoice::both;

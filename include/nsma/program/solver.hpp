@@ -44,10 +44,13 @@ private:
 enum class NloptMethod {
     slsqp,         ///< sequential quadratic programming
     auglag_lbfgs,  ///< augmented Lagrangian over L-BFGS
-    cobyla         ///< linear approximations without derivatives
+    auglag_slsqp,  ///< augmented Lagrangian over SLSQP
+    cobyla,        ///< linear approximations without derivatives
+    isres          ///< evolution strategy without derivatives, fixed seed
 };
 
-/// One call of NLopt. Throws like IpoptSolver::solve.
+/// One call of NLopt. Throws like IpoptSolver::solve. ISRES searches a box: with a sphere, unknowns
+/// without a bound get +-1.
 [[nodiscard]] SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
                                              const Eigen::VectorXd& start,
                                              const SolverOptions& options = {});

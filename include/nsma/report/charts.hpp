@@ -15,6 +15,7 @@ struct Chart {
     std::string name;
     std::string data;
     std::string commands;
+    int height = 625;  ///< of the SVG, for a width of 1000; the PNG is 1.6 times that
 };
 
 /// Frequency against energy: exact backbones beneath, linear frequencies dashed, single orbits

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nsma/orbit/pattern.hpp"
+
+namespace nsma {
+
+/// What one run of one method came to, judged by replay and by the proved best objective; the
+/// library's own word plays no part.
+enum class Outcome {
+    success,      ///< replayed within tolerance, objective within 1e-6 of the proved best
+    worse,        ///< replayed within tolerance, but a worse orbit: local optimum or early stop
+    off_level,    ///< replay refuses: the energy is not the level asked
+    outside,      ///< replay refuses: COND1, COND2 or COND3 violated
+    other_motion, ///< replay refuses: the marcher sees other contact steps
+    not_finite,   ///< no point, or one with NaN
+    limit         ///< stopped by its limit of time or evaluations, and refused
+};
+inline constexpr int outcome_count = 7;
+[[nodiscard]] std::string_view name(Outcome outcome);         ///< "success", "worse", ...
+[[nodiscard]] std::string_view description(Outcome outcome);  ///< one line for the table of causes
+
+/// Median of repeated runs and their quartiles.
+struct Spread {
+    double median = 0;
+    double low = 0;   ///< first quartile
+    double high = 0;  ///< third quartile
+};
+/// Throws std::invalid_argument on no value.
+[[nodiscard]] Spread spread(std::vector<double> values);
+
+/// One method with one setting on the programs of one size. CPU seconds a run.
+struct ProgramRecord {
+    Pattern pattern;
+    int size = 0;  ///< m
+    std::string method;
+    std::string setting;
+    int runs = 0;
+    int reported = 0;   ///< the library claims success
+    int succeeded = 0;  ///< Outcome::success
+    int certified = 0;  ///< proved the best by the method's own bound
+    bool proved = false;  ///< the best objective of every program is proved
+    Spread seconds;
+    double iterations = 0;       ///< median
+    double worst_gap = 0;        ///< |objective - best|/best
+    double worst_violation = 0;  ///< replayed
+    double error = 0;            ///< worst over the runs of the larger of the two
+};
+
+/// One way to the kernel. CPU seconds.
+struct KernelRecord {
+    Pattern pattern;
+    std::string method;
+    Spread seconds;
+    int dimension = 0;  ///< found
+    int expected = 0;   ///< closed form
+    double error = 0;   ///< sine of the largest angle to the exact space; 1: wrong dimension
+};
+
+/// One way to march one period of the exact first-mode orbit. CPU seconds a period.
+struct MarchRecord {
+    int cells = 0;  ///< N, or finite elements
+    std::string method;
+    std::string setting;
+    bool decides_contact = false;  ///< false: is told the contact steps
+    int steps = 0;                 ///< a period
+    Spread seconds;
+    double tip_error = 0;      ///< largest over the period, in units of |d|
+    double contact_error = 0;  ///< of the duration of contact, relative
+};
+
+/// One march over many periods.
+struct DriftRecord {
+    int cells = 0;
+    std::string method;
+    std::string setting;
+    int periods = 0;
+    double energy_drift = 0;        ///< |E - E_0|/E_0 at the end
+    double periodicity_defect = 0;  ///< energy norm of Q - Q_0 over that of Q_0, at the end
+    double seconds = 0;             ///< CPU
+};
+
+/// One cell of a stability map: one method on one kind of difficulty.
+struct StabilityRecord {
+    std::string map;  ///< "level", "start", "units" or "rows"
+    Pattern pattern;
+    int size = 0;
+    std::string method;
+    int column = 0;           ///< place along the map's axis, 0-based
+    std::string difficulty;   ///< what is on that axis, e.g. "E_min (1 + 1e-8)"
+    double above_least = 0;   ///< (E - E_min)/E_min
+    double below_greatest = 0;///< (E_max - E)/E_max
+    int runs = 0;
+    int reported = 0;
+    int false_success = 0;    ///< reported, but not Outcome::success
+    std::array<int, outcome_count> outcomes{};
+    bool proved = false;
+    double iterations = 0;    ///< median
+    double seconds = 0;       ///< median, CPU
+};
+
+/// Dimension that a dense method finds at one tolerance.
+struct ToleranceRecord {
+    Pattern pattern;
+    std::string method;
+    double tolerance = 0;
+    int found = 0;
+    int expected = 0;
+};
+
+/// Receives the records of the accuracy study as they come.
+class AccuracySink {
+public:
+    virtual ~AccuracySink() = default;
+    virtual void program(const ProgramRecord& record) = 0;
+    virtual void kernel(const KernelRecord& record) = 0;
+    virtual void march(const MarchRecord& record) = 0;
+    virtual void drift(const DriftRecord& record) = 0;
+    virtual void stability(const StabilityRecord& record) = 0;
+    virtual void tolerance(const ToleranceRecord& record) = 0;
+    virtual void progress(long done, long total) = 0;
+};
+
+}  // namespace nsma

@@ -1,0 +1,159 @@
+#include "nsma/study/accuracy.hpp"
+
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "nsma/orbit/backbone.hpp"
+#include "nsma/study/program_methods.hpp"
+
+namespace {
+
+using nsma::Outcome;
+
+struct Records final : nsma::AccuracySink {
+    void program(const nsma::ProgramRecord& record) override { programs.push_back(record); }
+    void kernel(const nsma::KernelRecord& record) override { kernels.push_back(record); }
+    void march(const nsma::MarchRecord& record) override { marches.push_back(record); }
+    void drift(const nsma::DriftRecord& record) override { drifts.push_back(record); }
+    void stability(const nsma::StabilityRecord& record) override { cells.push_back(record); }
+    void tolerance(const nsma::ToleranceRecord& record) override { tolerances.push_back(record); }
+    void progress(long done, long total) override { EXPECT_LE(done, total); }
+
+    std::vector<nsma::ProgramRecord> programs;
+    std::vector<nsma::KernelRecord> kernels;
+    std::vector<nsma::MarchRecord> marches;
+    std::vector<nsma::DriftRecord> drifts;
+    std::vector<nsma::StabilityRecord> cells;
+    std::vector<nsma::ToleranceRecord> tolerances;
+};
+
+nsma::Scene unit_scene(double gap) {
+    nsma::Scene scene;
+    scene.bar.gap = gap;
+    return scene;
+}
+
+TEST(Accuracy, PatternsHaveTheSizeAskedAndOneLeastEnergy) {
+    for (const int sign : {1, -1}) {
+        for (const int size : {2, 8, 32, 128}) {
+            const nsma::Pattern pattern = nsma::accuracy_pattern(size, sign);
+            EXPECT_EQ(nsma::kernel_dimension(pattern), size);
+            EXPECT_EQ(nsma::mode_of(pattern), 1);
+            EXPECT_NEAR(nsma::backbone_energy_ratio(1, pattern.period_ratio()), 25.0, 1e-9);  // 1/0.2^2
+        }
+        EXPECT_THROW((void)nsma::accuracy_pattern(3, sign), std::invalid_argument);
+    }
+    EXPECT_THROW((void)nsma::accuracy_pattern(2, 0), std::invalid_argument);
+}
+
+TEST(Accuracy, SpreadIsTheMedianAndTheQuartiles) {
+    const nsma::Spread five = nsma::spread({5, 1, 4, 2, 3});
+    EXPECT_EQ(five.median, 3);
+    EXPECT_EQ(five.low, 2);
+    EXPECT_EQ(five.high, 4);
+    EXPECT_EQ(nsma::spread({7}).median, 7);
+    EXPECT_EQ(nsma::spread({1, 2}).median, 1.5);
+    EXPECT_THROW((void)nsma::spread({}), std::invalid_argument);
+}
+
+TEST(Accuracy, QuickRunEndToEnd) {
+    Records seen;
+    ASSERT_TRUE(nsma::accuracy(unit_scene(1.0), {true}, seen, [] { return true; }));
+
+    std::set<std::string> methods;
+    for (const auto& record : seen.programs) {
+        methods.insert(record.method);
+        EXPECT_TRUE(record.proved) << record.size;  // every reference is certified
+        EXPECT_GT(record.runs, 0);
+        if (record.method != "default") continue;
+        EXPECT_EQ(record.succeeded, record.runs);
+        EXPECT_LE(record.error, 1e-9);
+    }
+    EXPECT_EQ(methods, (std::set<std::string>{"default", "proof first", "segment", "Ipopt", "Ipopt lifted", "SLSQP", "AUGLAG+LBFGS",
+                                              "AUGLAG+SLSQP", "COBYLA", "ISRES"}));
+    for (const auto& record : seen.kernels) {
+        // Divide and conquer loses vectors of repeated singular values in some versions of Eigen.
+        if (record.method == "dense SVD, divide and conquer") continue;
+        EXPECT_EQ(record.dimension, record.expected) << record.method;
+        EXPECT_LE(record.error, 1e-12) << record.method;  // rounding at N = 20
+    }
+    for (const auto& record : seen.marches) {
+        const bool exact = record.method.rfind("FE", 0) != 0;
+        EXPECT_LE(record.tip_error, exact ? 1e-12 : 2.0) << record.method;
+        if (exact) {
+            EXPECT_EQ(record.contact_error, 0.0);
+        }
+    }
+    for (const auto& record : seen.drifts) {
+        if (record.method == "wave queue") {
+            EXPECT_LE(record.energy_drift, 1e-15);  // rounding of the sum alone
+            EXPECT_LE(record.periodicity_defect, 1e-15);
+        }
+    }
+    std::set<std::string> maps;
+    for (const auto& record : seen.cells) {
+        maps.insert(record.map);
+        if (record.map == "level") {
+            EXPECT_TRUE(record.proved) << record.size << ' ' << record.difficulty;
+        }
+        // Where an answer is proved to exist the default path finds it.
+        if (record.method == "default" || record.method == "proof first") {
+            EXPECT_EQ(record.outcomes[0], record.runs) << record.map << ' ' << record.difficulty;
+        }
+        EXPECT_LE(record.false_success, record.reported);
+    }
+    EXPECT_EQ(maps, (std::set<std::string>{"level", "start", "units", "rows"}));
+    EXPECT_FALSE(seen.tolerances.empty());
+}
+
+TEST(Accuracy, DefaultPathSucceedsInEveryCellOfAReducedMap) {
+    for (const int sign : {1, -1}) {
+        nsma::Bar bar;
+        bar.gap = sign;
+        for (const int size : {2, 4, 8}) {
+            const auto problem = nsma::pattern_problem(nsma::accuracy_pattern(size, sign), sign);
+            const double least = *problem.interval.least;
+            const double greatest = *problem.interval.greatest;
+            for (const double level : {least * (1 + 1e-10), least * (1 + 1e-4), 0.5 * (least + greatest),
+                                       greatest * (1 - 1e-4), greatest * (1 - 1e-10)}) {
+                const nsma::ProgramCase on(bar, problem, nsma::Objective::least_shock, level);
+                EXPECT_TRUE(on.proved) << size << ' ' << level;
+                nsma::MethodRunner runner(nsma::program_methods(true).front());
+                const nsma::Trial trial = runner.run(on, on.program.program, on.best_x);
+                EXPECT_EQ(trial.outcome, Outcome::success) << size << ' ' << level;
+                EXPECT_LE(trial.error(), 1e-9);
+            }
+        }
+    }
+}
+
+TEST(Accuracy, RawAnswersAreJudgedByReplayNotByTheirStatus) {
+    nsma::Bar bar;
+    const auto problem = nsma::pattern_problem(nsma::accuracy_pattern(8, 1), 1);
+    const nsma::ProgramCase on(bar, problem, nsma::Objective::least_shock, 1.5 * *problem.interval.least);
+    nsma::ProgramMethod loose{nsma::ProgramMethod::Kind::ipopt, nsma::NloptMethod::slsqp, "Ipopt", 1e-3, false, false};
+    nsma::MethodRunner raw(loose);
+    const auto start = on.program.point(on.points.start(0).value());
+    const nsma::Trial refused = raw.run(on, on.program.program, start);
+    EXPECT_TRUE(refused.reported);
+    EXPECT_NE(refused.outcome, Outcome::success);  // its residuals are of the order of its tolerance
+    loose.polish = true;
+    nsma::MethodRunner polished(loose);
+    EXPECT_EQ(polished.run(on, on.program.program, start).outcome, Outcome::success);
+}
+
+TEST(Accuracy, StopsWhenToldAndRefusesAClosedGap) {
+    Records seen;
+    int left = 3;
+    EXPECT_FALSE(nsma::accuracy(unit_scene(1.0), {true}, seen, [&] { return left-- > 0; }));
+    EXPECT_TRUE(seen.programs.empty());
+    EXPECT_THROW((void)nsma::accuracy(unit_scene(0.0), {true}, seen, [] { return true; }), std::invalid_argument);
+    nsma::Scene extreme = unit_scene(1.0);
+    extreme.objective = nsma::Objective::max_energy;
+    EXPECT_THROW((void)nsma::accuracy(extreme, {true}, seen, [] { return true; }), std::invalid_argument);
+}
+
+}  // namespace
