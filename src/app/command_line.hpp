@@ -41,6 +41,17 @@ struct SweepArguments {
     bool quiet = false;
 };
 
+struct SensitivityArguments {
+    std::string scene_file;
+    std::optional<int> free_steps;     ///< with contact_steps: one pattern instead of the scene's
+    std::optional<int> contact_steps;
+    std::optional<double> energy;      ///< of one pattern
+    std::optional<Objective> objective;
+    std::string out;
+    OrbitSolverOptions solver;
+    bool quiet = false;
+};
+
 struct PlotArguments {
     std::string folder;
     bool quiet = false;
@@ -65,7 +76,7 @@ struct TextArguments {
 };
 
 using Arguments =
-    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, PlotArguments,
+    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, SensitivityArguments, PlotArguments,
                  ProveArguments, CheckArguments>;
 
 /// Reads the command line. Throws InputError (one line) on anything it cannot take.

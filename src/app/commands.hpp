@@ -14,6 +14,7 @@ enum ExitCode { exit_done = 0, exit_input = 2, exit_inadmissible = 3, exit_solve
 [[nodiscard]] int run(const ScanArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const OrbitArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const SweepArguments& arguments, const std::atomic<bool>& stop);
+[[nodiscard]] int run(const SensitivityArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const PlotArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const ProveArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const CheckArguments& arguments, const std::atomic<bool>& stop);
