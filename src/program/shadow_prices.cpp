@@ -18,6 +18,8 @@ namespace {
 
 // The two sides of a derivative that agree to this are one number.
 constexpr double side_tolerance = 1e-8;
+// A level this close to the least energy, relative, is the least energy: a few roundings.
+constexpr double end_tolerance = 1e-12;
 
 struct Side {
     enum class Status { finite, infeasible, root, refused } status = Status::refused;
@@ -81,22 +83,43 @@ struct OptimumSensitivity::Analysis {
         }
         level = wanted.value_or(set.energy(start));
         form = relaxed_program(set, objective, level, {}, reference);
-        const Polished polished = polish(form.program, form.point(start));
-        x = polished.x;
+        bool feasible = true;
+        x = form.point(start);
+        has_sphere = form.program.sphere_variables > 0;
+        if (!settled()) {
+            const Polished polished = polish(form.program, x);
+            x = polished.x;
+            feasible = polished.feasible;
+        }
         beta = form.beta(x);
         value = form.program.objective(x) * form.objective_unit;
-        kkt = polished.multipliers.residual;
         gradient = form.program.objective_gradient(x);
         gradient_scale = 1.0 + gradient.norm();
         sphere = Eigen::VectorXd::Zero(x.size());
-        has_sphere = form.program.sphere_variables > 0;
         if (has_sphere) sphere.head(form.orbit_variables) = 2.0 * x.head(form.orbit_variables);
-        if (!polished.feasible) {
+        if (!feasible) {
             refusal = "the point is not admissible to rounding";
             return;
         }
         find_active();
         if (refusal.empty()) find_multipliers();
+    }
+
+    // Ends of the energy interval are points of their own: rounding of the level must not move
+    // them along the sphere, by its square root.
+    [[nodiscard]] bool settled() {
+        if (!has_sphere) return false;
+        const RelaxedInterval interval = relaxed_interval(set, {}, false);
+        if (!interval.failed && !interval.empty && std::abs(level - interval.least) <= end_tolerance * level) {
+            x = form.point(interval.least_point);
+            return true;
+        }
+        if (form.program.violation(x) > options.active) return false;
+        find_active();
+        const bool vertex = refusal.empty() && flat.cols() == 0;
+        refusal.clear();
+        active.clear();
+        return vertex;
     }
 
     void find_active() {
@@ -130,7 +153,7 @@ struct OptimumSensitivity::Analysis {
             independent = rank == linear.rows();
             flat = svd.matrixV().rightCols(n - rank);
         }
-        if (!has_sphere) return;
+        if (!has_sphere || sphere.size() == 0) return;
         along = flat * (flat.transpose() * sphere);
         const double share = along.norm() / sphere.norm();
         transversal = share > options.inactive;

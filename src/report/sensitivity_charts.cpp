@@ -46,12 +46,19 @@ bool is_row(const Price& price) {
     return price.parameter == Parameter::cond1_row || price.parameter == Parameter::cond3_row;
 }
 
+// How much COND1 and COND3 both have to say: rows that save at least a tenth of what the most
+// telling one saves, those in flight counted first.
 int binding_rows(const OptimumRecord& optimum) {
-    int count = 0;
+    double highest = 0;
     for (const auto& price : optimum.prices) {
-        if (is_row(price) && saving(optimum, price) > 1e-9) count += price.parameter == Parameter::cond1_row ? 3 : 1;
+        if (is_row(price)) highest = std::max(highest, saving(optimum, price));
     }
-    return count;
+    int flight = 0, contact = 0;
+    for (const auto& price : optimum.prices) {
+        if (!is_row(price) || highest <= 1e-9 || saving(optimum, price) < 0.1 * highest) continue;
+        (price.parameter == Parameter::cond1_row ? flight : contact) += 1;
+    }
+    return 3 * flight + (flight > 0 ? 1 : 0) * contact + std::min(contact, 2);
 }
 
 }  // namespace
@@ -127,13 +134,13 @@ set tmargin screen 0.50
 set bmargin screen 0.24
 set format x '%g'
 set xlabel 'time t/τ, τ = L/c'
-set ylabel "saved by relaxing\n(% per %)" offset 0.5,0
+set ylabel "saved by relaxing\n% per %" offset 0.5,0
 set yrange [0:{highest}]
 set boxwidth {width}
 set label 3 {contact} at graph 0.01, graph 1.02 left noenhanced textcolor rgb '#333333'
 set key at screen 0.545, screen 0.11 center top vertical maxrows 3 Left reverse samplen 3
-plot 'binding.dat' index 1 using 1:2 with boxes fillstyle solid 0.9 border lc rgb '#d55e00' lw 1 title 'COND1 rows: penetration, % of the objective per % of |d|', \
-     'binding.dat' index 2 using 1:2 with boxes fillstyle pattern 4 border lc rgb '#000000' lw 1 title 'COND3 bounds: tension, % of the objective per % of YS|d|/L', \
+plot 'binding.dat' index 1 using 1:2 with boxes lc rgb '#d55e00' fillstyle solid 0.8 border lc rgb '#d55e00' title 'COND1 rows: penetration, % of the objective per % of |d|', \
+     'binding.dat' index 2 using 1:2 with boxes lc rgb '#000000' fillstyle pattern 4 border lc rgb '#000000' title 'COND3 bounds: tension, % of the objective per % of YS|d|/L', \
      NaN with points pt 7 ps 0.9*mark lc rgb '#d55e00' title 'above: rows at equality'
 unset multiplot
 )",
@@ -146,44 +153,78 @@ unset multiplot
     return chart;
 }
 
-Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records, const IntervalRecord& interval) {
+Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records, const IntervalRecord& interval,
+                       const OptimumRecord* optimum) {
     Chart chart{"relaxation",
-                fmt::format("# {}: amount (of |d|; of Y S |d|/L), E_min/E_g, predicted from the slope at zero\n", scene.title), ""};
-    std::string curves;
+                fmt::format("# {}: amount (of |d|; of Y S |d|/L), E_min/E_g, its tangent at zero, objective over its "
+                            "value at zero, its tangent\n",
+                            scene.title),
+                ""};
+    std::string energies, objectives;
     std::size_t style = 0;
     double reach = 0;
+    const auto slope_of = [](const std::vector<Price>& prices, Parameter parameter) -> std::optional<double> {
+        for (const auto& price : prices) {
+            if (price.parameter == parameter) return price.slope.right;
+        }
+        return std::nullopt;
+    };
+    const auto text = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : "NaN"; };
     for (const auto& [relaxed, parameter] :
          {std::pair{"penetration", Parameter::penetration}, std::pair{"band", Parameter::band},
           std::pair{"adhesion", Parameter::adhesion}}) {
-        const auto price = std::find_if(interval.least_prices.begin(), interval.least_prices.end(),
-                                        [&, which = parameter](const Price& one) { return one.parameter == which; });
-        const bool predicted = price != interval.least_prices.end() && price->slope.right.has_value();
+        const auto energy_slope = slope_of(interval.least_prices, parameter);
+        const auto objective_slope = optimum != nullptr ? slope_of(optimum->prices, parameter) : std::nullopt;
         chart.data += fmt::format("\n\n# {}\n", relaxed);
         for (const auto& record : records.curves) {
             if (!(record.pattern == interval.pattern) || record.relaxed != relaxed || !record.least) continue;
             reach = std::max(reach, record.amount);
-            chart.data += fmt::format("{} {} {}\n", record.amount, *record.least,
-                                      predicted ? fmt::format("{}", std::max(interval.least + *price->slope.right * record.amount, 0.0))
-                                                : "NaN");
+            std::optional<double> energy_line, objective, objective_line;
+            if (energy_slope) energy_line = interval.least + *energy_slope * record.amount;
+            if (optimum != nullptr && record.objective) objective = *record.objective / optimum->value;
+            if (objective_slope) objective_line = 1.0 + *objective_slope / optimum->value * record.amount;
+            chart.data += fmt::format("{} {} {} {} {}\n", record.amount, *record.least, text(energy_line),
+                                      text(objective), text(objective_line));
         }
-        curves += fmt::format(
-            ", \\\n     'relaxation.dat' index '{0}' using 1:2 with linespoints lw 2 pt {1} ps 0.8*mark {2} title '{3}'"
-            ", \\\n     'relaxation.dat' index '{0}' using 1:3 with lines lw 1.2 dt 3 lc rgb '#333333' notitle",
-            relaxed, marks.at(style), lines.at(style), words_of(relaxed));
+        const auto curve = [&](int value, int line) {
+            return fmt::format(
+                ", \\\n     'relaxation.dat' index {0} using 1:{1} with linespoints lw 2 pt {2} ps 0.9*mark {3} notitle"
+                ", \\\n     'relaxation.dat' index {0} using 1:{4} with lines lw 1.2 dt 3 lc rgb '#333333' notitle",
+                style, value, marks.at(style), lines.at(style), line);
+        };
+        energies += curve(2, 3);
+        objectives += curve(4, 5) + fmt::format(", \\\n     NaN with linespoints lw 2 pt {} ps 0.9*mark {} title '{}'",
+                                                marks.at(style), lines.at(style), words_of(relaxed));
         ++style;
     }
+    const std::string level = optimum != nullptr && optimum->level ? fmt::format(" at E/E_g = {:.3g}", *optimum->level) : "";
     chart.commands = fmt::format(
-        R"({axes}set title {title} noenhanced
-set xlabel 'amount allowed (of |d|; adhesion of YS|d|/L)'
-set ylabel 'least energy E_{{min}}/E_g'
+        R"(set multiplot
+{axes}set xlabel 'amount allowed'
 set xrange [0:{reach}]
 set yrange [0:*]
-set key bottom left Left reverse samplen 4
-plot NaN with lines lw 1.2 dt 3 lc rgb '#333333' title 'slope at zero, from the multipliers'{curves}
+set tmargin screen 0.86
+set bmargin screen 0.30
+set lmargin screen 0.10
+set rmargin screen 0.48
+set label 1 {title} at screen 0.5, screen 0.95 center noenhanced
+set title 'least energy E_{{min}}/E_g'
+unset key
+plot NaN notitle{energies}
+unset label 1
+set lmargin screen 0.59
+set rmargin screen 0.97
+set title {objective} noenhanced
+set key at screen 0.52, screen 0.155 center top vertical maxrows 2 Left reverse samplen 4 width 2
+plot NaN with lines lw 1.2 dt 3 lc rgb '#333333' title 'tangent, from the multipliers'{objectives}
+unset multiplot
 )",
         fmt::arg("axes", axes),
-        fmt::arg("title", gnuplot_text("Least energy when a condition is relaxed: " + pattern_text(interval.pattern))),
-        fmt::arg("reach", reach > 0 ? 1.02 * reach : 1.0), fmt::arg("curves", curves));
+        fmt::arg("title", gnuplot_text("Relaxing one condition: " + pattern_text(interval.pattern) +
+                                       "; lengths in |d|, tension in YS|d|/L")),
+        fmt::arg("objective", gnuplot_text(fmt::format("{}, relative{}", name(scene.objective), level))),
+        fmt::arg("reach", reach > 0 ? 1.02 * reach : 1.0), fmt::arg("energies", energies),
+        fmt::arg("objectives", objectives));
     return chart;
 }
 
@@ -247,10 +288,10 @@ set xrange [-1:29]
 set yrange [0:{highest}]
 set boxwidth 0.9
 set key outside bottom center horizontal samplen 2
-plot 'funnel.dat' index 0 using 1:2 with boxes fillstyle solid 0.15 border lc rgb '#555555' title 'kernel', \
-     'funnel.dat' index 1 using 1:2 with boxes fillstyle solid 1.0 border lc rgb '#222222' title 'after COND1', \
-     'funnel.dat' index 2 using 1:2 with boxes fillstyle pattern 4 border lc rgb '#0072b2' title 'after COND2', \
-     'funnel.dat' index 3 using 1:2 with boxes fillstyle solid 0.6 border lc rgb '#d55e00' title 'after COND3', \
+plot 'funnel.dat' index 0 using 1:2 with boxes lc rgb '#bbbbbb' fillstyle solid 0.4 border lc rgb '#777777' title 'kernel', \
+     'funnel.dat' index 1 using 1:2 with boxes lc rgb '#222222' fillstyle solid 0.9 border lc rgb '#222222' title 'after COND1', \
+     'funnel.dat' index 2 using 1:2 with boxes lc rgb '#000000' fillstyle pattern 4 border lc rgb '#000000' title 'after COND2', \
+     'funnel.dat' index 3 using 1:2 with boxes lc rgb '#d55e00' fillstyle solid 0.7 border lc rgb '#d55e00' title 'after COND3', \
      'funnel.dat' index 4 using 1:2:2 with labels offset 0,0.6 font ',11' notitle
 )",
         fmt::arg("axes", axes), fmt::arg("title", gnuplot_text(scene.title + ": patterns that each condition leaves")),
@@ -267,9 +308,20 @@ std::vector<std::filesystem::path> draw_sensitivity(const std::filesystem::path&
         drawn.push_back(charts / (chart.name + ".svg"));
         drawn.push_back(charts / (chart.name + ".png"));
     };
-    const OptimumRecord* telling = nullptr;  // the optimum that most rows hold
+    // The optimum that most rows hold; at the level of its relaxation curves where there are any.
+    const auto on_curve = [&](const OptimumRecord& record) {
+        return std::any_of(records.curves.begin(), records.curves.end(), [&](const CurveRecord& point) {
+            return point.pattern == record.orbit.kernel.pattern && point.level && point.level == record.level;
+        });
+    };
+    const OptimumRecord* telling = nullptr;
+    int most = -1;
     for (const auto& record : records.optima) {
-        if (telling == nullptr || binding_rows(record) > binding_rows(*telling)) telling = &record;
+        const int rows = binding_rows(record) + (on_curve(record) ? 1000 : 0);
+        if (rows > most) {
+            most = rows;
+            telling = &record;
+        }
     }
     if (telling != nullptr) draw(binding_chart(scene, *telling));
     const IntervalRecord* interval = nullptr;
@@ -277,7 +329,10 @@ std::vector<std::filesystem::path> draw_sensitivity(const std::filesystem::path&
         const bool same = telling != nullptr && record.pattern == telling->orbit.kernel.pattern;
         if (interval == nullptr || same) interval = &record;
     }
-    if (interval != nullptr && !records.curves.empty()) draw(relaxation_chart(scene, records, *interval));
+    if (interval != nullptr && !records.curves.empty()) {
+        const bool at_level = telling != nullptr && telling->level && telling->orbit.kernel.pattern == interval->pattern;
+        draw(relaxation_chart(scene, records, *interval, at_level ? telling : nullptr));
+    }
     if (records.ablations.size() > 1) {
         if (!records.curves.empty()) draw(count_chart(scene, records));
         draw(funnel_chart(scene, records));

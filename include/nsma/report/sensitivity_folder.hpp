@@ -59,9 +59,10 @@ void write_sensitivity(const std::filesystem::path& folder, const Scene& scene,
 
 /// Where in the motion the wall decides: x_1(t) above, what relaxing each row saves below.
 [[nodiscard]] Chart binding_chart(const Scene& scene, const OptimumRecord& optimum);
-/// E_min of one pattern under each relaxation, with the predicted slope at zero dashed.
+/// E_min of one pattern under each relaxation and, given its optimum at the level of the curves,
+/// the objective; the tangents at zero that the multipliers predict dotted.
 [[nodiscard]] Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records,
-                                     const IntervalRecord& interval);
+                                     const IntervalRecord& interval, const OptimumRecord* optimum);
 /// Number of admissible patterns under each relaxation.
 [[nodiscard]] Chart count_chart(const Scene& scene, const SensitivityRecords& records);
 /// Patterns left after each condition, in every order.
