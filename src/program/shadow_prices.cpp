@@ -18,6 +18,8 @@ namespace {
 
 // The two sides of a derivative that agree to this are one number.
 constexpr double side_tolerance = 1e-8;
+// Rates of the scaled unknowns are sought within this box; one that reaches it has no end.
+constexpr double direction_box = 1e4;
 // A level this close to the least energy, relative, is the least energy: a few roundings.
 constexpr double end_tolerance = 1e-12;
 
@@ -307,13 +309,19 @@ struct OptimumSensitivity::Analysis {
             program.rows.row(count - 1) = sphere.transpose();
             program.row_lower[count - 1] = program.row_upper[count - 1] = rate.sphere;
         }
-        program.lower = Eigen::VectorXd::Constant(n, -no_bound);
-        program.upper = Eigen::VectorXd::Constant(n, no_bound);
+        // CLP calls a point optimal that is not when every unknown is free: a wide box, and its
+        // multipliers are checked.
+        program.lower = Eigen::VectorXd::Constant(n, -direction_box);
+        program.upper = Eigen::VectorXd::Constant(n, direction_box);
         const LinearSolution solution = LinearSolver(program).minimise(cost);
         if (solution.status == LinearStatus::infeasible) {
             return {Side::Status::infeasible, 0, "no orbit on this side"};
         }
         if (solution.status != LinearStatus::optimal) return refused("the linear program of the side has no end");
+        const double unbalanced = (cost - program.rows.transpose() * solution.row_dual).norm();
+        if (unbalanced > 1e-7 * (1.0 + cost.norm()) || solution.x.cwiseAbs().maxCoeff() > 0.5 * direction_box) {
+            return refused("the linear program of the side has no end");
+        }
         // Onto the rows tight at the solution, so that only rounding is left.
         Eigen::VectorXd d = solution.x;
         std::vector<Eigen::Index> tight;
