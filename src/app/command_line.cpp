@@ -123,6 +123,7 @@ Arguments parse(int count, const char* const* words) {
                            "  nsma scan problems/first-mode.toml --cells 6 --period 0 4\n"
                            "  nsma orbit problems/first-mode.toml --free 48 --contact 16 --energy 37.5\n"
                            "  nsma sweep problems/first-mode.toml --out out/first-mode\n"
+                           "  nsma sensitivity problems/first-mode.toml --out out/sensitivity\n"
                            "  nsma plot out/first-mode\n"
                            "  nsma prove problems/first-mode.toml --out proofs.jsonl\n"
                            "  nsma check proofs.jsonl\n") +
@@ -186,6 +187,26 @@ Arguments parse(int count, const char* const* words) {
     add_quiet(*accuracy_command, accuracy.quiet);
     accuracy_command->footer("Example:\n  nsma accuracy problems/first-mode.toml --out out/accuracy");
 
+    SensitivityArguments sensitivity;
+    SolverWords sensitivity_words;
+    std::string sensitivity_objective;
+    auto* sensitivity_command = app.add_subcommand("sensitivity", "which condition decides, how much, and what happens when it is relaxed");
+    sensitivity_command->add_option("SCENE", sensitivity.scene_file, "scene file (TOML)")->required();
+    auto* sensitivity_free = sensitivity_command->add_option("--free", sensitivity.free_steps, "free flight r [steps] of one pattern")->check(whole(1, max_period_steps / 2));
+    auto* sensitivity_contact = sensitivity_command->add_option("--contact", sensitivity.contact_steps, "contact phase p [steps] of one pattern")->check(whole(1, max_period_steps / 2));
+    sensitivity_free->needs(sensitivity_contact);
+    sensitivity_contact->needs(sensitivity_free);
+    sensitivity_command->add_option("--energy", sensitivity.energy, "energy ratio E/E_g of one pattern (joules for a closed gap); without it its least energy")
+        ->check(finite_positive)->needs(sensitivity_free);
+    sensitivity_command->add_option("--objective", sensitivity_objective, "least-shock, nearest, least-force, min-energy or max-energy instead of the scene's")
+        ->check(objective_validator);
+    sensitivity_command->add_option("--out", sensitivity.out, "folder for the results; made if missing")->required();
+    sensitivity_words.add(*sensitivity_command, sensitivity.solver);
+    add_quiet(*sensitivity_command, sensitivity.quiet);
+    sensitivity_command->footer("Examples:\n"
+                                "  nsma sensitivity problems/first-mode.toml --out out/sensitivity\n"
+                                "  nsma sensitivity problems/first-mode.toml --free 48 --contact 16 --energy 37.5 --out out/one");
+
     PlotArguments plot;
     auto* plot_command = app.add_subcommand("plot", "draw the charts of a stored sweep again");
     plot_command->add_option("DIR", plot.folder, "folder of a sweep")->required();
@@ -212,7 +233,8 @@ Arguments parse(int count, const char* const* words) {
     check_command->add_option("FILE", check.file, "certificates written by nsma prove")->required();
     check_command->footer("Example:\n  nsma check proofs.jsonl");
 
-    for (auto* command : {scan_command, orbit_command, sweep_command, accuracy_command, export_command, plot_command, prove_command, check_command}) {
+    for (auto* command : {scan_command, orbit_command, sweep_command, accuracy_command, sensitivity_command, export_command,
+                          plot_command, prove_command, check_command}) {
         command->failure_message(CLI::FailureMessage::simple);
     }
     try {
@@ -237,6 +259,11 @@ Arguments parse(int count, const char* const* words) {
         orbit.solver.solvers = orbit_words.choice();
         if (!objective.empty()) orbit.objective = objective_named(objective);
         return orbit;
+    }
+    if (*sensitivity_command) {
+        sensitivity.solver.solvers = sensitivity_words.choice();
+        if (!sensitivity_objective.empty()) sensitivity.objective = objective_named(sensitivity_objective);
+        return sensitivity;
     }
     if (*sweep_command) {
         sweep.solver.solvers = sweep_words.choice();

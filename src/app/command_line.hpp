@@ -55,6 +55,17 @@ struct AccuracyArguments {
     bool quiet = false;
 };
 
+struct SensitivityArguments {
+    std::string scene_file;
+    std::optional<int> free_steps;     ///< with contact_steps: one pattern instead of the scene's
+    std::optional<int> contact_steps;
+    std::optional<double> energy;      ///< of one pattern
+    std::optional<Objective> objective;
+    std::string out;
+    OrbitSolverOptions solver;
+    bool quiet = false;
+};
+
 struct PlotArguments {
     std::string folder;
     bool quiet = false;
@@ -80,7 +91,7 @@ struct TextArguments {
 
 using Arguments =
     std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, ExportArguments, AccuracyArguments,
-                 PlotArguments, ProveArguments, CheckArguments>;
+                 SensitivityArguments, PlotArguments, ProveArguments, CheckArguments>;
 
 /// Versions of the program and its solvers, one line.
 [[nodiscard]] std::string version();

@@ -16,6 +16,7 @@ enum ExitCode { exit_done = 0, exit_input = 2, exit_inadmissible = 3, exit_solve
 [[nodiscard]] int run(const SweepArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const ExportArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const AccuracyArguments& arguments, const std::atomic<bool>& stop);
+[[nodiscard]] int run(const SensitivityArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const PlotArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const ProveArguments& arguments, const std::atomic<bool>& stop);
 [[nodiscard]] int run(const CheckArguments& arguments, const std::atomic<bool>& stop);
