@@ -472,12 +472,18 @@ private:
         return run.usable;
     }
 
-    // From the polish alone: its KKT residual and the bound of its Lagrangian.
-    [[nodiscard]] Optimality optimality_of(const OrbitProgram& program, const Polished& polished) const {
+    // From the polish alone: its KKT residual, the bound of its Lagrangian and that of products.
+    [[nodiscard]] Optimality optimality_of(const OrbitProgram& program, const Polished& polished) {
         Optimality result;
         result.kkt_residual = polished.multipliers.residual;
         if (polished.stationary && std::isfinite(polished.lower_bound)) {
             set_bound(program, polished.objective, polished.lower_bound, result);
+        }
+        if (result.global || !polished.feasible) return result;
+        // No point changes this bound: it is computed once.
+        if (!product_bound_) product_bound_ = product_bound(program.program);
+        if (*product_bound_ > -infinity && (!result.lower_bound || *product_bound_ > polished.lower_bound)) {
+            set_bound(program, polished.objective, *product_bound_, result);
         }
         return result;
     }
@@ -558,6 +564,7 @@ private:
     const Reduction& reduction_;
     Eigen::VectorXd reference_;
     Best relaxed_;  // a better orbit that bounding came upon
+    std::optional<double> product_bound_;  // in the scale of the program
     OrbitAnswer answer_;
 };
 

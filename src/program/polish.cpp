@@ -14,6 +14,9 @@ namespace {
 
 constexpr int halvings_limit = 40;
 constexpr double objective_rounding = 1e-15;  // relative to 1 + |f|: a few units in the last place
+constexpr double curvature_rounding = 1e-9;  // relative; a flat direction is no way down
+constexpr double escape_decrease = 1e-12;  // relative to 1 + |f|: more than rounding
+constexpr int escape_halvings = 12;
 constexpr double rank_tolerance = 1e-11;  // rows are scaled to order one
 
 enum class Kind { inequality, lower, upper };
@@ -214,11 +217,14 @@ FirstOrder first_order(const Program& program, const Boundary& boundary,
     return result;
 }
 
-// Newton direction of the KKT system on x + span(basis) with the sphere, or the given descent
-// direction where the system is not positive definite along the sphere.
-Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundary,
-                                 const Eigen::MatrixXd& basis, const Eigen::VectorXd& x,
-                                 double sphere_multiplier, const Eigen::VectorXd& descent) {
+// Directions along x + span(basis) and the sphere, and the Hessian of the Lagrangian on them.
+struct Tangent {
+    Eigen::MatrixXd span;     // orthonormal columns
+    Eigen::MatrixXd hessian;
+};
+
+Tangent tangent_of(const Program& program, const Boundary& boundary, const Eigen::MatrixXd& basis,
+                   const Eigen::VectorXd& x, double sphere_multiplier) {
     const auto k = basis.cols();
     Eigen::MatrixXd tangent = Eigen::MatrixXd::Identity(k, k);
     Eigen::MatrixXd hessian = basis.transpose() * (program.hessian * basis);
@@ -227,9 +233,25 @@ Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundar
         hessian += 2.0 * sphere_multiplier * (top.transpose() * top);
         tangent = null_space((basis.transpose() * boundary.on_sphere(x)).transpose(), k);
     }
-    const Eigen::MatrixXd span = basis * tangent;
+    return {basis * tangent, tangent.transpose() * hessian * tangent};
+}
+
+// What rounding does to the objective between two points of the sphere: its own, and the multiplier
+// times what the sphere's equation is off by, the larger part where the sphere hardly cuts the
+// flat (close to E_min).
+double rounding_between(const Program& program, double sphere_multiplier, const Polished& at, const Eigen::VectorXd& x) {
+    const double own = objective_rounding * (1.0 + std::abs(at.objective) + std::abs(sphere_multiplier));
+    if (program.sphere_variables == 0) return own;
+    return own + std::abs(sphere_multiplier * (program.sphere_residual(x) - program.sphere_residual(at.x)));
+}
+
+// Newton direction of the KKT system on x + span(basis) with the sphere, or the given descent
+// direction where the system is not positive definite along the sphere.
+Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundary,
+                                 const Eigen::MatrixXd& basis, const Eigen::VectorXd& x,
+                                 double sphere_multiplier, const Eigen::VectorXd& descent) {
+    const auto [span, reduced] = tangent_of(program, boundary, basis, x, sphere_multiplier);
     if (span.cols() == 0) return Eigen::VectorXd::Zero(x.size());  // a point: nothing to reduce over
-    const Eigen::MatrixXd reduced = tangent.transpose() * hessian * tangent;
     const Eigen::LDLT<Eigen::MatrixXd> factor(reduced);
     const Eigen::VectorXd gradient = span.transpose() * program.objective_gradient(x);
     const double scale = std::max(reduced.cwiseAbs().maxCoeff(), 1e-300);
@@ -243,6 +265,42 @@ Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundar
     // Exact minimiser along the line where the curvature allows, else a bold step.
     if (curvature > 1e-12 * along.squaredNorm()) return along * (along.squaredNorm() / curvature);
     return along * (0.5 / std::max(along.norm(), 1e-300));
+}
+
+// Direction along the active rows in which a stationary point is a maximum or saddle: that of the
+// least curvature of the Lagrangian; size 0 where no curvature is negative.
+Eigen::VectorXd escape_direction(const Program& program, const Boundary& boundary,
+                                 const std::vector<Row>& active, const Eigen::VectorXd& x,
+                                 double sphere_multiplier) {
+    const Eigen::MatrixXd basis = null_space(boundary.flat(active), x.size());
+    const auto [span, hessian] = tangent_of(program, boundary, basis, x, sphere_multiplier);
+    if (span.cols() == 0) return {};
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(hessian);
+    const double scale = spectrum.eigenvalues().cwiseAbs().maxCoeff();
+    if (spectrum.eigenvalues()[0] >= -curvature_rounding * scale) return {};
+    return span * spectrum.eigenvectors().col(0);
+}
+
+// Leaves a stationary point that is no minimum along its active rows; false at a minimum.
+bool escaped(const Program& program, const Boundary& boundary, const std::vector<Row>& active,
+             double sphere_multiplier, const PolishOptions& options, Polished& result) {
+    const Eigen::VectorXd direction = escape_direction(program, boundary, active, result.x, sphere_multiplier);
+    if (direction.size() == 0) return false;
+    const Eigen::MatrixXd basis = null_space(boundary.flat(active), result.x.size());
+    for (const double side : {0.5, -0.5}) {  // half the radius of the sphere
+        std::vector<Row> blocking;
+        double step = boundary.step_to_boundary(result.x, side * direction, 1e-14, blocking);
+        for (int halving = 0; halving < escape_halvings; ++halving, step *= 0.5) {
+            Eigen::VectorXd x = boundary.project(active, result.x + step * side * direction);
+            if (!boundary.retract(basis, x) || program.violation(x) > options.feasibility) continue;
+            const double objective = program.objective(x);
+            if (objective >= result.objective - escape_decrease * (1.0 + std::abs(result.objective))) continue;
+            result.x = std::move(x);
+            result.objective = objective;
+            return true;
+        }
+    }
+    return false;
 }
 
 // Best bound inf L over the flat of the equalities, over the sphere's multiplier only.
@@ -305,7 +363,10 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
         const auto active = boundary.active(result.x, options.activity);
         order = first_order(program, boundary, active, result.x);
         const double gradient_scale = 1.0 + program.objective_gradient(result.x).norm();
-        if (order.direction.norm() <= 1e-3 * options.stationarity * gradient_scale) break;
+        if (order.direction.norm() <= 1e-3 * options.stationarity * gradient_scale) {
+            if (!escaped(program, boundary, active, order.multipliers.sphere, options, result)) break;
+            continue;
+        }
 
         // Rows that the projected gradient leaves may be left; the others hold.
         std::vector<Row> working;
@@ -334,8 +395,7 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
                     // progress: there a full Newton step is judged by what it leaves of the slope.
                     const auto slope_halved = [&] {
                         return newton && halving == 0 &&
-                               objective <= result.objective +
-                                                objective_rounding * (1.0 + std::abs(result.objective)) &&
+                               objective <= result.objective + rounding_between(program, order.multipliers.sphere, result, x) &&
                                first_order(program, boundary, boundary.active(x, options.activity), x)
                                        .direction.norm() <= 0.5 * order.direction.norm();
                     };
