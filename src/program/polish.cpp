@@ -391,15 +391,16 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
                 if (boundary.retract(null_space(boundary.flat(rows), n), x) &&
                     program.violation(x) <= options.feasibility) {
                     const double objective = program.objective(x);
+                    const double rounding =
+                        rounding_between(program, order.multipliers.sphere, result, x);
                     // Closer than the root of rounding to an optimum the objective shows no
                     // progress: there a full Newton step is judged by what it leaves of the slope.
                     const auto slope_halved = [&] {
-                        return newton && halving == 0 &&
-                               objective <= result.objective + rounding_between(program, order.multipliers.sphere, result, x) &&
+                        return newton && halving == 0 && objective <= result.objective + rounding &&
                                first_order(program, boundary, boundary.active(x, options.activity), x)
                                        .direction.norm() <= 0.5 * order.direction.norm();
                     };
-                    if (objective < result.objective || slope_halved()) {
+                    if (objective < result.objective - rounding || slope_halved()) {
                         moved = true;
                         result.x = std::move(x);
                         result.objective = objective;
