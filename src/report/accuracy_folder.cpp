@@ -91,7 +91,7 @@ AccuracyFolder::AccuracyFolder(const fs::path& folder, const Scene& scene) : fol
     for (int k = 0; k < outcome_count; ++k) outcomes += fmt::format(",{}", name(static_cast<Outcome>(k)));
     open(stability_, "stability.csv",
          ("map,cells,free_steps,contact_steps,kernel_dimension,method,column,difficulty,above_least,below_greatest,runs,reported,"
-          "false_success,proved,iterations,seconds" + outcomes).c_str());
+          "false_success,certified,proved,iterations,seconds" + outcomes).c_str());
     open(causes_, "causes.csv", "method,map,cause,runs,of,what");
     open(tolerance_, "tolerance.csv", "cells,free_steps,contact_steps,method,tolerance,found,expected");
     open(winners_, "winners.csv", "kernel_dimension,rank,method,setting,seconds_median,error,succeeded,runs");
@@ -150,10 +150,10 @@ void AccuracyFolder::stability(const StabilityRecord& record) {
     results_.stability.push_back(record);
     std::string outcomes;
     for (const int count : record.outcomes) outcomes += fmt::format(",{}", count);
-    write(stability_, fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}{}", record.map, steps(record.pattern), record.size,
+    write(stability_, fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}{}", record.map, steps(record.pattern), record.size,
                                   csv_text(record.method), record.column, csv_text(record.difficulty),
                                   csv_number(record.above_least), csv_number(record.below_greatest), record.runs,
-                                  record.reported, record.false_success, record.proved, csv_number(record.iterations),
+                                  record.reported, record.false_success, record.certified, record.proved, csv_number(record.iterations),
                                   csv_number(record.seconds), outcomes));
 }
 

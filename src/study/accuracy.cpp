@@ -11,8 +11,10 @@
 namespace nsma {
 namespace {
 
-// Levels of the programs, as shares of [E_min, E_max].
-constexpr double level_shares[] = {0.05, 0.3, 0.8};
+// Levels of the programs: at these the best objective is proved at every size, at the first two by
+// the Lagrangian (no amplitude is zero), at the last by products (all but two are zero).
+constexpr double levels_of_least[] = {1.1, 1.3};    // times E_min
+constexpr double levels_of_greatest[] = {0.8};      // times E_max
 // Beyond this size a derivative-free method only meets its limit.
 constexpr int derivative_free_limit = 32;
 constexpr int quick_derivative_free_limit = 2;
@@ -64,7 +66,7 @@ ProgramRecord measure(const ProgramMethod& method, const std::vector<ProgramCase
 
 AccuracySizes accuracy_sizes(const AccuracyOptions& options) {
     if (options.quick) return {{2, 8}, {2, 8}, {5, 10, 20}, {2, 8}, {10, 100}, 10, 1, 2};
-    return {{2, 8, 32},            {2, 4, 8, 16},         {5, 10, 20, 40, 80, 160, 320},
+    return {{2, 8, 32, 128},       {2, 4, 8, 16, 32},     {5, 10, 20, 40, 80, 160, 320},
             {2, 8, 32, 64},        {10, 1'000, 100'000},  20,
             5,                     3};
 }
@@ -88,9 +90,12 @@ void study_programs(AccuracyRun& run) {
         const double least = problem.interval.least.value();
         const double greatest = problem.interval.greatest.value();
         std::vector<ProgramCase> cases;
-        cases.reserve(std::size(level_shares));
-        for (const double share : level_shares) {
-            cases.emplace_back(run.scene.bar, problem, run.scene.objective, least + share * (greatest - least));
+        cases.reserve(std::size(levels_of_least) + std::size(levels_of_greatest));
+        for (const double factor : levels_of_least) {
+            cases.emplace_back(run.scene.bar, problem, run.scene.objective, factor * least);
+        }
+        for (const double factor : levels_of_greatest) {
+            cases.emplace_back(run.scene.bar, problem, run.scene.objective, factor * greatest);
         }
         run.step();
         for (const auto& method : methods) {

@@ -32,8 +32,8 @@ struct Place {
 std::vector<Place> places(bool quick) {
     if (quick) return {{true, 1e-8, false}, {true, 0.5, true}, {false, 1e-8, false}};
     return {{true, 1e-12, false}, {true, 1e-9, false}, {true, 1e-6, false},  {true, 1e-3, false},
-            {true, 0.1, true},    {true, 0.5, true},   {true, 0.9, true},    {false, 1e-3, false},
-            {false, 1e-6, false}, {false, 1e-9, false}, {false, 1e-12, false}};
+            {true, 0.1, true},    {true, 0.3, true},   {true, 0.5, true},    {true, 0.9, true},
+            {false, 1e-3, false}, {false, 1e-6, false}, {false, 1e-9, false}, {false, 1e-12, false}};
 }
 std::string label(const Place& place) {
     if (place.middle) return text("%g of the way", place.distance);
@@ -63,6 +63,7 @@ public:
         ++record_.runs;
         if (trial.reported) ++record_.reported;
         if (trial.reported && trial.outcome != Outcome::success) ++record_.false_success;
+        if (trial.certified) ++record_.certified;
         ++record_.outcomes.at(static_cast<std::size_t>(trial.outcome));
         iterations_.push_back(trial.iterations);
         seconds_.push_back(trial.seconds);
@@ -79,6 +80,12 @@ private:
     std::vector<double> seconds_;
 };
 
+Eigen::VectorXd random_unit(Eigen::Index size, std::mt19937_64& generator) {
+    Eigen::VectorXd direction(size);
+    for (auto& value : direction) value = static_cast<double>(generator() >> 11) * 0x1.0p-52 - 1.0;
+    return direction.normalized();
+}
+
 void level_map(AccuracyRun& run) {
     const Bar& bar = run.scene.bar;
     const auto columns = places(run.quick);
@@ -92,23 +99,19 @@ void level_map(AccuracyRun& run) {
                 if (!run.go_on()) return;
                 MethodRunner runner(method, run_limit);
                 Cell cell("level", on, method, static_cast<int>(column), label(columns[column]));
+                // The admissible point of a segment, then points of the level in random directions.
+                std::mt19937_64 generator(1);
                 const int starts = method.whole() ? 1 : run.sizes.starts;
                 for (int start = 0; start < starts; ++start) {
-                    if (const auto gamma = on.points.start(start)) {
-                        cell.add(runner.run(on, on.program.program, on.program.point(*gamma)));
-                    }
+                    const Eigen::VectorXd x = start == 0 ? on.program.point(on.points.start(0).value())
+                                                         : random_unit(on.best_x.size(), generator);
+                    cell.add(runner.run(on, on.program.program, x));
                 }
                 run.sink.stability(cell.record());
             }
             run.step();
         }
     }
-}
-
-Eigen::VectorXd random_unit(Eigen::Index size, std::mt19937_64& generator) {
-    Eigen::VectorXd direction(size);
-    for (auto& value : direction) value = static_cast<double>(generator() >> 11) * 0x1.0p-52 - 1.0;
-    return direction.normalized();
 }
 
 void start_map(AccuracyRun& run, const ProgramCase& on, int starts) {

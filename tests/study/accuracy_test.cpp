@@ -133,7 +133,7 @@ TEST(Accuracy, DefaultPathSucceedsInEveryCellOfAReducedMap) {
 TEST(Accuracy, RawAnswersAreJudgedByReplayNotByTheirStatus) {
     nsma::Bar bar;
     const auto problem = nsma::pattern_problem(nsma::accuracy_pattern(8, 1), 1);
-    const nsma::ProgramCase on(bar, problem, nsma::Objective::least_shock, 1.5 * *problem.interval.least);
+    const nsma::ProgramCase on(bar, problem, nsma::Objective::least_shock, 1.3 * *problem.interval.least);
     nsma::ProgramMethod loose{nsma::ProgramMethod::Kind::ipopt, nsma::NloptMethod::slsqp, "Ipopt", 1e-3, false, false};
     nsma::MethodRunner raw(loose);
     const auto start = on.program.point(on.points.start(0).value());

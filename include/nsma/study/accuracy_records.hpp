@@ -97,6 +97,7 @@ struct StabilityRecord {
     int runs = 0;
     int reported = 0;
     int false_success = 0;    ///< reported, but not Outcome::success
+    int certified = 0;        ///< proved the best by the method's own bound
     std::array<int, outcome_count> outcomes{};
     bool proved = false;
     double iterations = 0;    ///< median

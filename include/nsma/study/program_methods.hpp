@@ -52,11 +52,14 @@ struct ProgramCase {
     double best = 0;        ///< objective of the best orbit known, reported units
     bool proved = false;    ///< ... and proved to be the best
     Eigen::VectorXd best_x; ///< its unknowns
-    /// Where the Lagrangian leaves a gap: CPU seconds of the relaxations that bound the objective,
-    /// which every method needs before its answer is known to be the best, and whether they do.
+    /// Where the Lagrangian leaves a gap: CPU seconds of the bound by products and relaxations,
+    /// which every method needs before its answer is known to be the best, and whether it holds.
     double bound_seconds = 0;
     bool bound_holds = false;
     Eigen::VectorXd warm_x; ///< on this level, from the best orbit of a level 2 % away
+
+private:
+    void bound_objective(double objective);
 };
 
 /// One run, judged.
