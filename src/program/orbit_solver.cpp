@@ -25,6 +25,9 @@ constexpr double row_rounding = 1e-13;
 
 // Unknowns beyond which a relaxation takes long enough to be counted eightfold.
 constexpr int large_program = 10;
+// Unknowns beyond which Ipopt comes to an optimum in less time than an active-set descent from a
+// segment, which takes a step for each bound it meets (data/accuracy.md).
+constexpr int segment_limit = 48;
 
 bool is_extreme(Objective objective) {
     return objective == Objective::min_energy || objective == Objective::max_energy;
@@ -236,13 +239,19 @@ private:
             return vertices[static_cast<std::size_t>(k) % vertices.size()];
         };
 
-        if (options_.solvers == SolverChoice::proof && proved_segment(program, level, start(0))) return;
+        const bool stop_at_proof = options_.solvers == SolverChoice::proof;
+        const bool many_unknowns = reduction_.variables() > segment_limit;
+        if (stop_at_proof && !many_unknowns && proved_segment(program, level, start(0))) return;
 
         Best ipopt;
         Best nlopt;
         const bool with_ipopt = options_.solvers != SolverChoice::nlopt;
         const bool with_nlopt = options_.solvers != SolverChoice::ipopt;
         std::vector<SolverRun> others;
+        if (const auto begin = start(0); stop_at_proof && many_unknowns && begin) {
+            attempt(program, level, *begin, "ipopt", 0, ipopt, others);
+            if (accept_proved(ipopt, {ipopt.run}) || proved_segment(program, level, begin)) return;
+        }
         // NLopt is some twenty times cheaper a call, so it does the search among local optima;
         // Ipopt starts elsewhere and goes on to further starts only while it holds a worse one.
         int next = 1;
@@ -256,14 +265,15 @@ private:
             }
         };
         if (with_nlopt) search_with_nlopt();
-        if (options_.solvers == SolverChoice::proof && nlopt.usable) {
+        if (stop_at_proof && nlopt.usable) {
             settle(program, level, nullptr, &nlopt, next, others);
             std::vector<SolverRun> runs{nlopt.run};
             runs.insert(runs.end(), others.begin(), others.end());
             if (accept_proved(nlopt, std::move(runs))) return;
         }
         for (int k = 0; with_ipopt && k < options_.starts && !ipopt.global; ++k) {
-            const int number = k == 0 ? 0 : next++;
+            const bool first = ipopt.run.name.empty();
+            const int number = first ? 0 : next++;
             const auto begin = start(number);
             if (!begin) break;
             attempt(program, level, *begin, "ipopt", number, ipopt, others);
@@ -295,7 +305,7 @@ private:
         }
         if (relaxed_.usable) ranked.push_back(&relaxed_);
         std::stable_sort(ranked.begin(), ranked.end(),
-                         [](const Best* a, const Best* b) { return a->rank < b->rank; });
+                         [this](const Best* a, const Best* b) { return preferable(*a, *b); });
         if (request_.objective == Objective::max_energy && take_vertex(ranked)) return;
         for (const Best* best : ranked) {
             accept(best->candidate);
@@ -378,7 +388,7 @@ private:
     void settle(const OrbitProgram& program, const std::optional<LevelPoints>& level, Best* ipopt,
                 Best* nlopt, int& next, std::vector<SolverRun>& others) {
         Best* best = ipopt;
-        if (best == nullptr || (nlopt != nullptr && nlopt->usable && nlopt->rank < best->rank)) best = nlopt;
+        if (best == nullptr || (nlopt != nullptr && nlopt->usable && (!best->usable || preferable(*nlopt, *best)))) best = nlopt;
         if (options_.bound_nodes < 1 || !best->usable || best->global || !level) return;
         std::optional<Polished> better;
         double objective = program.program.objective(program.point(best->candidate.gamma));
@@ -466,7 +476,7 @@ private:
             }
         }
         trial.run = run;
-        const bool better = trial.usable && (!best.usable || trial.rank < best.rank);
+        const bool better = trial.usable && (!best.usable || preferable(trial, best));
         if (better || best.run.name.empty()) std::swap(best, trial);
         if (!trial.run.name.empty()) others.push_back(trial.run);
         return run.usable;
@@ -509,6 +519,12 @@ private:
         if (!other) return std::nullopt;
         Eigen::VectorXd aside = 0.9 * gamma + 0.1 * *other;
         return level ? level->reach(aside) : std::optional(std::move(aside));
+    }
+
+    // The lower objective; of two that agree, the one that is proved.
+    [[nodiscard]] bool preferable(const Best& a, const Best& b) const {
+        if (a.global != b.global && difference(a, b) <= options_.agreement_tolerance) return a.global;
+        return a.rank < b.rank;
     }
 
     [[nodiscard]] bool not_worse(const Best& a, const Best& b) const {

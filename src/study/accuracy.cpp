@@ -18,7 +18,7 @@ constexpr double levels_of_greatest[] = {0.8};      // times E_max
 // Beyond this size a derivative-free method only meets its limit.
 constexpr int derivative_free_limit = 32;
 constexpr int quick_derivative_free_limit = 2;
-constexpr double slow_run = 0.5;  // seconds; one run of such work is enough
+constexpr double slow_run = 0.5;  // seconds; such work is not repeated
 
 bool derivative_free(const ProgramMethod& method) {
     return method.kind == ProgramMethod::Kind::nlopt &&
@@ -33,29 +33,31 @@ ProgramRecord measure(const ProgramMethod& method, const std::vector<ProgramCase
     record.pattern = cases.front().problem.kernel.pattern;
     record.size = cases.front().problem.kernel.dimension();
     record.proved = true;
-    std::vector<double> seconds;
+    std::vector<double> seconds;  // of a run, the mean over levels and starts; one for each repeat
     std::vector<double> iterations;
     const bool own_start = method.warm || method.whole();
-    for (const auto& one : cases) {
-        record.proved = record.proved && one.proved;
-        for (int start = 0; start < (own_start ? 1 : sizes.starts); ++start) {
-            const Eigen::VectorXd x = one.program.point(one.points.start(start).value());
-            for (int repeat = 0; repeat < sizes.repeats; ++repeat) {
-                const Trial trial = runner.run(one, one.program.program, x);
-                seconds.push_back(trial.seconds);
-                if (repeat == 0) {
-                    ++record.runs;
-                    if (trial.reported) ++record.reported;
-                    if (trial.outcome == Outcome::success) ++record.succeeded;
-                    if (trial.certified) ++record.certified;
-                    iterations.push_back(trial.iterations);
-                    record.worst_gap = std::max(record.worst_gap, trial.gap);
-                    record.worst_violation = std::max(record.worst_violation, trial.violation);
-                    record.error = std::max(record.error, trial.error());
-                }
-                if (trial.seconds > slow_run) break;
+    for (const auto& one : cases) record.proved = record.proved && one.proved;
+    for (int repeat = 0; repeat < sizes.repeats; ++repeat) {
+        double total = 0;
+        int runs = 0;
+        for (const auto& one : cases) {
+            for (int start = 0; start < (own_start ? 1 : sizes.starts); ++start) {
+                const Trial trial = runner.run(one, one.program.program, one.program.point(one.points.start(start).value()));
+                total += trial.seconds;
+                ++runs;
+                if (repeat > 0) continue;
+                ++record.runs;
+                if (trial.reported) ++record.reported;
+                if (trial.outcome == Outcome::success) ++record.succeeded;
+                if (trial.certified) ++record.certified;
+                iterations.push_back(trial.iterations);
+                record.worst_gap = std::max(record.worst_gap, trial.gap);
+                record.worst_violation = std::max(record.worst_violation, trial.violation);
+                record.error = std::max(record.error, trial.error());
             }
         }
+        seconds.push_back(total / runs);
+        if (seconds.back() > slow_run) break;
     }
     record.seconds = spread(seconds);
     record.iterations = spread(iterations).median;

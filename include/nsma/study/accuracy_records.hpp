@@ -33,7 +33,8 @@ struct Spread {
 /// Throws std::invalid_argument on no value.
 [[nodiscard]] Spread spread(std::vector<double> values);
 
-/// One method with one setting on the programs of one size. CPU seconds a run.
+/// One method with one setting on the programs of one size. CPU seconds a run: the mean over
+/// levels and starts, of which the repeats have the spread.
 struct ProgramRecord {
     Pattern pattern;
     int size = 0;  ///< m
