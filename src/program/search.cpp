@@ -13,8 +13,12 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // Unknowns beyond which a relaxation takes long enough to be counted eightfold.
 constexpr int costly_relaxation = 10;
-// Unknowns beyond which SLSQP, whose steps cost their cube, is left to the augmented Lagrangian with L-BFGS.
+// Unknowns beyond which SLSQP, whose steps cost their cube, is left to the augmented Lagrangian with L-BFGS, and a quarter
+// of the starts is made, each of which costs as much as all of a small program.
 constexpr Eigen::Index slsqp_limit = 64;
+// Unknowns beyond which a relaxation, a matrix of their square under hundreds of eigenvalue decompositions, costs more
+// than all the rest; the bound of the Lagrangian stands.
+constexpr int relaxation_limit = 48;
 
 }  // namespace
 
@@ -30,8 +34,9 @@ Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Patt
                const OrbitRequest& request, const Goal& goal, double least_energy)
     : options_(options), ipopt_solver_(ipopt), problem_(problem), goal_(goal),
       program_(orbit_program(problem.set.reduction, problem.kernel, goal.objective, request.level, least_energy, goal.reference)),
-      with_ipopt_(options.solvers != SolverChoice::nlopt), with_nlopt_(options.solvers != SolverChoice::ipopt) {
+      with_ipopt_(options.solvers != SolverChoice::nlopt), with_nlopt_(options.solvers != SolverChoice::ipopt), starts_(options.starts) {
     if (request.level) level_.emplace(problem.set, *request.level);
+    if (program_.program.variables() > slsqp_limit) starts_ = (starts_ + 3) / 4;
 }
 
 std::optional<Best> Search::run() {
@@ -73,7 +78,7 @@ std::optional<Eigen::VectorXd> Search::aside_of(const Eigen::VectorXd& gamma, in
 
 // NLopt is some twenty times cheaper a call, so it does the search among local optima.
 void Search::search_with_nlopt() {
-    for (int k = 0; k < options_.starts && !nlopt_.optimality.global; ++k, ++next_) {
+    for (int k = 0; k < starts_ && !nlopt_.optimality.global; ++k, ++next_) {
         const auto begin = start(next_);
         if (!begin) return;
         attempt(*begin, "nlopt", next_, nlopt_);
@@ -82,7 +87,7 @@ void Search::search_with_nlopt() {
 
 // Starts elsewhere, and goes on to further starts only while Ipopt holds a worse optimum.
 void Search::search_with_ipopt() {
-    for (int k = 0; k < options_.starts && !ipopt_.optimality.global; ++k) {
+    for (int k = 0; k < starts_ && !ipopt_.optimality.global; ++k) {
         const int number = k == 0 ? 0 : next_++;
         const auto begin = start(number);
         if (!begin) return;
@@ -102,11 +107,12 @@ void Search::ask(const Best& better, Best& worse, const char* solver) {
 void Search::settle() {
     const Best* best = &ipopt_;
     if (nlopt_.usable && nlopt_.rank < best->rank) best = &nlopt_;
-    if (options_.bound_nodes < 1 || !best->usable || best->optimality.global || !level_) return;
+    const int unknowns = problem_.set.reduction.variables();
+    if (options_.bound_nodes < 1 || unknowns > relaxation_limit || !best->usable || best->optimality.global || !level_) return;
     std::optional<Polished> better;
     double objective = program_.program.objective(program_.point(best->candidate.gamma));
     ConicBoundOptions bounding;
-    const bool costly = problem_.set.reduction.variables() > costly_relaxation;
+    const bool costly = unknowns > costly_relaxation;
     bounding.node_limit = costly ? (options_.bound_nodes + 7) / 8 : options_.bound_nodes;
     if (costly) bounding.max_iterations = 2'000;
     bounding.improve = [&](const Eigen::VectorXd& x) {

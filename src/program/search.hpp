@@ -80,6 +80,7 @@ private:
     std::optional<LevelPoints> level_;
     bool with_ipopt_;
     bool with_nlopt_;
+    int starts_;    // of each solver
     int next_ = 1;  // number of the next start
     Best ipopt_;
     Best nlopt_;
