@@ -23,8 +23,10 @@ inline Eigen::MatrixXd null_space(const Eigen::MatrixXd& matrix, Eigen::Index n)
     if (matrix.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
     qr.setThreshold(rank_tolerance);
-    const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
-    return q.rightCols(n - qr.rank());
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(n, n - qr.rank());
+    basis.bottomRows(basis.cols()).setIdentity();
+    basis.applyOnTheLeft(qr.householderQ().setLength(qr.rank()));
+    return basis;
 }
 
 /// The feasible set as rows a.x <= b, equalities apart, and the moves along its boundary.

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int halvings_limit = 40;
 constexpr double objective_rounding = 1e-15;  // relative to 1 + |f|: a few units in the last place
+constexpr double nearly_active = 1e-6;  // slack from which descent no longer comes to a row by itself
 constexpr double curvature_rounding = 1e-9;  // relative; a flat direction is no way down
 constexpr double escape_decrease = 1e-12;  // relative to 1 + |f|: more than rounding
 constexpr int escape_halvings = 12;
@@ -262,6 +263,19 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
             if (moved) break;
         }
         if (!moved) break;
+    }
+    // Where the sphere passes through a vertex, descent along its edges only creeps towards it: rows that are almost
+    // active are tried as active.
+    for (double near = 1e2 * options.activity; near <= nearly_active; near *= 10) {
+        if (order.multipliers.residual <= options.stationarity) break;
+        const auto rows = boundary.active(result.x, near);
+        Eigen::VectorXd x = boundary.project(rows, result.x);
+        if (!boundary.retract(null_space(boundary.flat(rows), n), x) || program.violation(x) > options.feasibility) continue;
+        FirstOrder there = first_order(program, boundary, boundary.active(x, options.activity), x);
+        if (there.multipliers.residual > options.stationarity) continue;
+        result.x = std::move(x);
+        result.objective = program.objective(result.x);
+        order = std::move(there);
     }
     result.feasible = program.violation(result.x) <= options.feasibility;
     result.multipliers = order.multipliers;

@@ -32,7 +32,7 @@ public:
             proof_.unproved = set_.reason;
             return std::move(proof_);
         } else {
-            bounds_.emplace(kernel_, reduction_);
+            bounds_.emplace(kernel_, reduction_, set_.shape);
             const bool empty = set_.status == AdmissibleSet::Status::empty;
             certificate.claim = empty ? Certificate::Claim::empty : Certificate::Claim::nonempty;
             if (reduction_.gap_sign == 0) {
@@ -162,9 +162,20 @@ private:
         }
     }
 
+    // The columns of a known shape's vertices are whole multiples of 1/c.
+    [[nodiscard]] RationalVector known_vertex(const Eigen::VectorXd& gamma) const {
+        std::vector<Rational> point(variables());
+        for (std::size_t j = 0; j < variables(); ++j) {
+            const int c = contact(j);
+            point[j] = Rational(std::lround(gamma[static_cast<Eigen::Index>(j)] * c)) / c;
+        }
+        return sparse(bounds_->unreduced(point));
+    }
+
     // The vertex of floating-point `gamma` in fractions: its zero columns (for a direction in the
     // unit box also its +-1 columns) and active rows determine it. Empty where they do not.
     [[nodiscard]] RationalVector exact_point(const Eigen::VectorXd& gamma, bool direction) const {
+        if (!direction && set_.shape != AdmissibleSet::Shape::general) return known_vertex(gamma);
         const double tolerance = vertex_tolerance * gamma.cwiseAbs().maxCoeff();
         std::vector<std::size_t> basic;
         std::vector<int> fixed(variables(), 0);

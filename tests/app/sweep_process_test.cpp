@@ -73,12 +73,18 @@ protected:
     std::string output() { return contents(folder_ / ".out"); }
 
     static std::vector<std::string> sweep(const std::string& scene, const fs::path& out, bool resume = false) {
-        std::vector<std::string> words{NSMA_PROGRAM, "sweep", scene, "--out", out.string(), "--quiet"};
+        // Of the bound on the optimum only a little: what is tested is what becomes of the rows.
+        std::vector<std::string> words{NSMA_PROGRAM, "sweep", scene, "--out", out.string(), "--quiet", "--bound-nodes", "1"};
         if (resume) words.emplace_back("--resume");
         return words;
     }
+    /// Sanitized ranks do not look for leaks: OpenMPI leaks in components that are unloaded before the report, so that
+    /// no suppression can name them. The same sweep alone does look.
     static std::vector<std::string> ranks(int count, const std::vector<std::string>& words) {
-        std::vector<std::string> all{"mpirun", "--oversubscribe", "-n", std::to_string(count)};
+        const char* given = std::getenv("ASAN_OPTIONS");
+        std::vector<std::string> all{"env", "ASAN_OPTIONS=" + std::string(given == nullptr ? "" : given) + ":detect_leaks=0",
+                                     "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+                                     "mpirun", "--oversubscribe", "-n", std::to_string(count)};
         all.insert(all.end(), words.begin(), words.end());
         return all;
     }
@@ -128,8 +134,6 @@ TEST_F(SweepProcess, KilledAtTwentyRandomMomentsItGoesOnToTheSameTables) {
 }
 
 TEST_F(SweepProcess, AnyNumberOfRanksGivesTheSameTables) {
-    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
     for (const std::string objective : {"least-shock", "nearest"}) {
         const std::string scene = write_scene(objective + ".toml", objective, "[1.6, 3.0, 12.0]");
         const fs::path alone = folder_ / (objective + "-alone");
@@ -145,8 +149,6 @@ TEST_F(SweepProcess, AnyNumberOfRanksGivesTheSameTables) {
 }
 
 TEST_F(SweepProcess, ALostRankLosesNothingThatWasStored) {
-    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
     const fs::path alone = folder_ / "alone";
     const fs::path out = folder_ / "out";
     const int code = run(sweep(scene_, alone));
