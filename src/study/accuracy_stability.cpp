@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <random>
 
 #include "accuracy_parts.hpp"
@@ -11,10 +12,14 @@ namespace nsma {
 namespace {
 
 constexpr double run_limit = 3.0;  // seconds a run of the maps
-// The pattern of the start, unit and row maps beside a first-mode one: several local optima.
-constexpr Pattern hard_pattern{6, 23, 1};
-constexpr double hard_level = 1.5;  // in E_min, as in the report of its local optima
-constexpr double easy_level = 1.35;
+// The patterns of the start, unit and row maps beside a first-mode one, for a gap > 0, with E/E_g:
+// unknowns of both signs; local optima (144 and 192) at a level through a vertex. Both proved.
+struct HardProgram {
+    Pattern pattern;
+    double level;
+};
+constexpr HardProgram hard_programs[] = {{{6, 23, 1}, 1.5}, {{6, 18, 6}, 36.0}};
+constexpr double easy_level = 1.35;  // in E_min
 constexpr int easy_size = 8;
 
 std::string text(const char* format, double value) {
@@ -154,18 +159,20 @@ void posed_map(AccuracyRun& run, const char* map, const ProgramCase& on, const s
 
 void study_stability(AccuracyRun& run) {
     const Bar& bar = run.scene.bar;
-    run.expect(static_cast<long>(run.sizes.maps.size() * places(run.quick).size()) + 6);
+    const long patterns = bar.gap_sign() < 0 || run.quick ? 1 : 1 + static_cast<long>(std::size(hard_programs));
+    run.expect(static_cast<long>(run.sizes.maps.size() * places(run.quick).size()) + 3 * patterns);
     level_map(run);
-    std::vector<Pattern> patterns{accuracy_pattern(easy_size, bar.gap_sign())};
-    if (bar.gap_sign() > 0 && !run.quick) patterns.push_back(hard_pattern);
-    for (const Pattern& pattern : patterns) {
+    const auto study = [&](const Pattern& pattern, std::optional<double> level) {
         if (!run.go_on()) return;
         const PatternProblem problem = pattern_problem(pattern, bar.gap_sign());
-        const ProgramCase on(bar, problem, run.scene.objective, (pattern == hard_pattern ? hard_level : easy_level) * problem.interval.least.value());
+        const ProgramCase on(bar, problem, run.scene.objective, level.value_or(easy_level * problem.interval.least.value()));
         start_map(run, on, run.quick ? 2 : 8);
         posed_map(run, "units", on, scaled_programs(on.program.program, run.quick));
         posed_map(run, "rows", on, redundant_programs(on));
-    }
+    };
+    study(accuracy_pattern(easy_size, bar.gap_sign()), std::nullopt);
+    if (bar.gap_sign() < 0 || run.quick) return;
+    for (const auto& hard : hard_programs) study(hard.pattern, hard.level);
 }
 
 }  // namespace nsma
