@@ -13,6 +13,7 @@ namespace nsma {
 namespace {
 
 constexpr double smallest = 1e-17;  // what an error of zero is drawn at
+constexpr double smallest_contact_error = 1e-4;
 
 template <typename Record, typename Name>
 std::vector<std::string> names(const std::vector<Record>& records, Name name_of) {
@@ -109,8 +110,8 @@ Chart program_chart(const AccuracyResults& results) {
         add_block(chart, "certified-front" + suffix, stairs(pareto_front(results.programs, sizes[k], true), slowest * 2));
         add_block(chart, "front" + suffix, stairs(pareto_front(results.programs, sizes[k]), slowest * 2));
         const double left = k % 2 == 0 ? 0.10 : 0.59;
-        const double top = k < 2 ? 0.92 : 0.555;
-        chart.commands += frame(left, left + 0.39, top - 0.275, top);
+        const double top = k < 2 ? 0.93 : 0.55;
+        chart.commands += frame(left, left + 0.39, top - 0.30, top);
         chart.commands += fmt::format("set title 'm = {}' offset 0,-0.7\nset xlabel '{}' offset 0,0.5\n"
                                       "set ylabel 'largest error' offset 1,0\n", sizes[k], k + 2 < sizes.size() ? "" : "CPU time of a run (s)");
         std::string plot = fmt::format("plot '{}.dat' index 'certified-front{}' using 1:2 with {}, '' index 'front{}' using 1:2 with {}",
@@ -136,7 +137,7 @@ Chart program_chart(const AccuracyResults& results) {
     entries.emplace_back("hollow: not every answer certified", program_style("Ipopt", false));
     entries.emplace_back("nothing certified is faster", certified_front);
     entries.emplace_back("nothing at all is faster", any_front);
-    chart.commands += legend(entries, 0.0, 0.17, 5) + "unset multiplot\n";
+    chart.commands += legend(entries, 0.0, 0.16, 5) + "unset multiplot\n";
     return chart;
 }
 
@@ -193,7 +194,7 @@ Chart drift_chart(const AccuracyResults& results) {
     }
     const std::string range = "set yrange [3e-18:30]\nset ytics add ('0' 1e-17)\n";
     return panels_chart("energy-drift",
-                      fmt::format("Drift of the first nonsmooth mode, N = {}", results.drifts.empty() ? 0 : results.drifts.front().cells),
+                      fmt::format("Drift of the first nonsmooth mode, N = {} (what leaves the frame is unstable)", results.drifts.empty() ? 0 : results.drifts.front().cells),
                       labels, rows,
                       {{"energy", "periods marched", "|E - E_0|/E_0", "1:2", range},
                        {"state", "periods marched", "periodicity defect (energy norm)", "1:3", range}},
@@ -207,13 +208,15 @@ Chart march_chart(const AccuracyResults& results) {
     for (std::size_t i = 0; i < labels.size(); ++i) {
         for (const auto& record : results.marches) {
             if (label(record) != labels[i]) continue;
-            rows[i] += fmt::format("{} {} {} {}\n", record.cells, drawn(record.tip_error), drawn(record.contact_error), record.seconds.median);
+            rows[i] += fmt::format("{} {} {} {}\n", record.cells, drawn(record.tip_error), std::max(record.contact_error, smallest_contact_error),
+                                   record.seconds.median);
         }
     }
     const std::string range = "set xrange [3:500]\nset yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n";
     return panels_chart("error-and-cost", "One period of the first nonsmooth mode", labels, rows,
                       {{"tip displacement", "cells or elements N", "largest error / |d|", "1:2", range},
-                       {"duration of contact", "cells or elements N", "relative error", "1:3", range},
+                       {"duration of contact", "cells or elements N", "relative error", "1:3",
+                        "set xrange [3:500]\nset yrange [5e-5:5]\nset ytics add ('0' 1e-4)\n"},
                        {"cost of a period", "cells or elements N", "CPU time (s)", "1:4", "set xrange [3:500]\n"}},
                       5);
 }
@@ -229,8 +232,8 @@ Chart kernel_chart(const AccuracyResults& results) {
         }
     }
     return panels_chart("accuracy-kernels", "Kernel of S_T: error and cost", labels, rows,
-                      {{"distance to the exact space", "cells N", "sine of the largest angle", "1:2", "set yrange [1e-17:10]\n"},
-                       {"cost", "cells N", "CPU time (s)", "1:3", ""}},
+                      {{"distance to the exact space", "cells N", "sine of the largest angle", "1:2", "set xrange [3:300]\nset yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n"},
+                       {"cost", "cells N", "CPU time (s)", "1:3", "set xrange [3:300]\n"}},
                       2);
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "chart_blocks.hpp"
+#include "gnuplot.hpp"
 
 namespace nsma {
 namespace {
@@ -36,6 +37,13 @@ double shade(double value, double lo, double hi) {
     return std::clamp(std::log(value / lo) / std::log(hi / lo), 0.0, 1.0);
 }
 
+// Two digits and the SI prefix of the second: 3.1µ, 86µ, 4.2m, 590m, 1.3.
+std::string short_time(double seconds) {
+    const ScaledUnit unit = scaled_unit(std::max(seconds, 1e-6), "");
+    const double value = seconds * unit.factor;
+    return fmt::format("{:.{}f}{}", value, value < 0.995 ? 2 : value < 9.95 ? 1 : 0, unit.unit);
+}
+
 HeatMap::Cell cell(const StabilityRecord& record, Shown shown, int column, int row, double lo, double hi) {
     switch (shown) {
         case Shown::failures:
@@ -47,8 +55,7 @@ HeatMap::Cell cell(const StabilityRecord& record, Shown shown, int column, int r
         }
         case Shown::seconds: {
             const double value = 1e3 * record.seconds;
-            return {column, row, shade(value, lo, hi),
-                    value >= 99.5 ? fmt::format("{:.0f}", value) : fmt::format("{:.2g}", value)};
+            return {column, row, shade(value, lo, hi), short_time(record.seconds)};
         }
     }
     return {};
@@ -213,7 +220,7 @@ std::vector<Chart> stability_charts(const AccuracyResults& results) {
                                      "Success rate (%): replayed, and within 1e-6 of the best (*: best known, not proved)"));
         charts.push_back(level_chart(results, Shown::iterations, "stability-iterations",
                                      "Iterations or evaluations, median"));
-        charts.push_back(level_chart(results, Shown::seconds, "stability-time", "CPU time of a run (ms), median"));
+        charts.push_back(level_chart(results, Shown::seconds, "stability-time", "CPU time of a run (s; m: 1e-3, µ: 1e-6), median"));
     }
     std::vector<Pattern> patterns;
     for (const auto& record : results.stability) {
