@@ -15,6 +15,7 @@ namespace {
 
 constexpr int halvings_limit = 40;
 constexpr double objective_rounding = 1e-15;  // relative to 1 + |f|: a few units in the last place
+constexpr double sphere_rounding = 1e-14;  // of its equation and COND2's, sums of up to some hundred terms of order one
 constexpr double nearly_active = 1e-6;  // slack from which descent no longer comes to a row by itself
 constexpr double curvature_rounding = 1e-9;  // relative; a flat direction is no way down
 constexpr double escape_decrease = 1e-12;  // relative to 1 + |f|: more than rounding
@@ -92,7 +93,7 @@ Tangent tangent_of(const Program& program, const Boundary& boundary, const Eigen
 // times what the sphere's equation is off by, the larger part where the sphere hardly cuts the
 // flat (close to E_min).
 double rounding_between(const Program& program, double sphere_multiplier, const Polished& at, const Eigen::VectorXd& x) {
-    const double own = objective_rounding * (1.0 + std::abs(at.objective) + std::abs(sphere_multiplier));
+    const double own = objective_rounding * (1.0 + std::abs(at.objective)) + sphere_rounding * std::abs(sphere_multiplier);
     if (program.sphere_variables == 0) return own;
     return own + std::abs(sphere_multiplier * (program.sphere_residual(x) - program.sphere_residual(at.x)));
 }

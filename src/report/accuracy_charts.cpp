@@ -47,7 +47,7 @@ std::string legend(const std::vector<std::pair<std::string, std::string>>& entri
 }
 
 std::string program_label(const ProgramRecord& record) {
-    return record.method + (record.setting.find("warm") != std::string::npos ? ", warm start" : "");
+    return record.method + (record.warm ? ", warm start" : "");
 }
 
 // The shape tells the method; filled marks are of certified answers only.
@@ -135,8 +135,8 @@ Chart program_chart(const AccuracyResults& results) {
     std::vector<std::pair<std::string, std::string>> entries;
     for (const auto& label : labels) entries.emplace_back(label, program_style(label, true));
     entries.emplace_back("hollow: not every answer certified", program_style("Ipopt", false));
-    entries.emplace_back("nothing certified is faster", certified_front);
-    entries.emplace_back("nothing at all is faster", any_front);
+    entries.emplace_back("Pareto front, certified", certified_front);
+    entries.emplace_back("Pareto front, any", any_front);
     chart.commands += legend(entries, 0.0, 0.16, 5) + "unset multiplot\n";
     return chart;
 }

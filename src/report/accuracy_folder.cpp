@@ -220,7 +220,7 @@ std::vector<const ProgramRecord*> pareto_front(const std::vector<ProgramRecord>&
     };
     std::vector<const ProgramRecord*> front;
     for (const auto& record : records) {
-        if (record.size == size && (!certified || all_certified(record))) front.push_back(&record);
+        if (record.size == size && !record.warm && (!certified || all_certified(record))) front.push_back(&record);
     }
     const std::vector<const ProgramRecord*> rivals = front;
     std::erase_if(front, [&](const auto* record) {

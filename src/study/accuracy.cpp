@@ -30,6 +30,7 @@ ProgramRecord measure(const ProgramMethod& method, const std::vector<ProgramCase
     ProgramRecord record;
     record.method = method.name;
     record.setting = method.setting();
+    record.warm = method.warm;
     record.pattern = cases.front().problem.kernel.pattern;
     record.size = cases.front().problem.kernel.dimension();
     record.proved = true;

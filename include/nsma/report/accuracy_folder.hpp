@@ -70,8 +70,8 @@ private:
 /// Every answer of the record was proved the best by the method itself.
 [[nodiscard]] bool all_certified(const ProgramRecord& record);
 
-/// Of a size's records, or of those whose answers are all certified, the ones that no other
-/// beats, by increasing time: one beats another when it is faster beyond the quartiles of both
+/// Of a size's records with a cold start, or of those whose answers are all certified, the ones
+/// that no other beats, by increasing time: one beats another when it is faster beyond the quartiles of both
 /// and its error is not larger, rounding (1e-14) aside.
 [[nodiscard]] std::vector<const ProgramRecord*> pareto_front(const std::vector<ProgramRecord>& records, int size,
                                                              bool certified = false);

@@ -40,6 +40,7 @@ struct ProgramRecord {
     int size = 0;  ///< m
     std::string method;
     std::string setting;
+    bool warm = false;  ///< started at the optimum of another level, whose cost is not counted
     int runs = 0;
     int reported = 0;   ///< the library claims success
     int succeeded = 0;  ///< Outcome::success
