@@ -72,33 +72,34 @@ public:
         return result;
     }
 
-    // Equalities above the normals of `rows`: the flat on which the point may move.
-    [[nodiscard]] Eigen::MatrixXd flat(const std::vector<Row>& rows) const {
-        Eigen::MatrixXd result(equalities_.rows() + static_cast<Eigen::Index>(rows.size()),
-                               program_.variables());
-        result.topRows(equalities_.rows()) = equalities_;
-        result.bottomRows(static_cast<Eigen::Index>(rows.size())) = normals(rows);
-        return result;
+    // Orthonormal basis of the directions in which the equalities and `rows` keep their values.
+    [[nodiscard]] Eigen::MatrixXd directions(const std::vector<Row>& rows) const {
+        const Flat flat = flat_of(rows);
+        const Eigen::MatrixXd inner = null_space(flat.system, flat.system.cols());
+        Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(program_.variables(), inner.cols());
+        basis(flat.free, Eigen::all) = inner;
+        return basis;
     }
 
     // Nearest point of the flat on which `rows` and the equalities hold exactly.
     [[nodiscard]] Eigen::VectorXd project(const std::vector<Row>& rows, Eigen::VectorXd x) const {
-        const Eigen::MatrixXd system = flat(rows);
-        if (system.rows() == 0) return x;
-        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-        decomposition.setThreshold(rank_tolerance);
-        decomposition.compute(system);
-        for (int pass = 0; pass < 2; ++pass) {
-            Eigen::VectorXd defect(system.rows());
-            defect.head(equalities_.rows()) = program_.equality_values - equalities_ * x;
-            for (std::size_t i = 0; i < rows.size(); ++i) {
-                defect[equalities_.rows() + static_cast<Eigen::Index>(i)] = slack(rows[i], x);
-            }
-            x += decomposition.solve(defect);
-        }
         for (const auto& row : rows) {  // bounds hold to the bit
             if (row.kind == Kind::lower) x[row.index] = program_.lower[row.index];
             if (row.kind == Kind::upper) x[row.index] = program_.upper[row.index];
+        }
+        const Flat flat = flat_of(rows);
+        if (flat.system.rows() == 0 || flat.system.cols() == 0) return x;
+        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+        decomposition.setThreshold(rank_tolerance);
+        decomposition.compute(flat.system);
+        for (int pass = 0; pass < 2; ++pass) {
+            Eigen::VectorXd defect(flat.system.rows());
+            defect.head(equalities_.rows()) = program_.equality_values - equalities_ * x;
+            auto next = equalities_.rows();
+            for (const auto& row : rows) {
+                if (row.kind == Kind::inequality) defect[next++] = slack(row, x);
+            }
+            x(flat.free) += decomposition.solve(defect);
         }
         return x;
     }
@@ -150,6 +151,35 @@ public:
     }
 
 private:
+    // Equalities above the inequalities among `rows`, on the unknowns that no bound among them holds.
+    struct Flat {
+        std::vector<Eigen::Index> free;
+        Eigen::MatrixXd system;
+    };
+    [[nodiscard]] Flat flat_of(const std::vector<Row>& rows) const {
+        std::vector<char> held(static_cast<std::size_t>(program_.variables()), 0);
+        std::vector<Eigen::Index> chosen;
+        for (const auto& row : rows) {
+            if (row.kind == Kind::inequality) {
+                chosen.push_back(row.index);
+            } else {
+                held[static_cast<std::size_t>(row.index)] = 1;
+            }
+        }
+        Flat flat;
+        for (Eigen::Index j = 0; j < program_.variables(); ++j) {
+            if (held[static_cast<std::size_t>(j)] == 0) flat.free.push_back(j);
+        }
+        const auto count = static_cast<Eigen::Index>(flat.free.size());
+        flat.system.resize(equalities_.rows() + static_cast<Eigen::Index>(chosen.size()), count);
+        flat.system.topRows(equalities_.rows()) = equalities_(Eigen::all, flat.free);
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            const Eigen::RowVectorXd row = program_.inequalities.row(chosen[i]);
+            flat.system.row(equalities_.rows() + static_cast<Eigen::Index>(i)) = row(flat.free);
+        }
+        return flat;
+    }
+
     template <typename Visit>
     void for_each_row(const Visit& visit) const {
         for (Eigen::Index i = 0; i < program_.inequalities.rows(); ++i) visit({Kind::inequality, i});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -16,6 +17,7 @@ namespace {
 constexpr int halvings_limit = 40;
 constexpr double objective_rounding = 1e-15;  // relative to 1 + |f|: a few units in the last place
 constexpr double sphere_rounding = 1e-14;  // of its equation and COND2's, sums of up to some hundred terms of order one
+constexpr double support_rounding = 1e-13;  // relative; rows are scaled to order one
 constexpr double nearly_active = 1e-6;  // slack from which descent no longer comes to a row by itself
 constexpr double curvature_rounding = 1e-9;  // relative; a flat direction is no way down
 constexpr double escape_decrease = 1e-12;  // relative to 1 + |f|: more than rounding
@@ -27,6 +29,23 @@ struct FirstOrder {
     Eigen::VectorXd direction;
     std::vector<Row> supporting;  // active rows with a positive multiplier, independent
 };
+
+// Least squares over all columns where that is nonnegative already: every active row pushes back, the usual case at the
+// end of a descent, for which adding columns one by one would take their number of decompositions.
+std::optional<NonnegativeSolution> all_supporting(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
+    if (matrix.cols() == 0 || matrix.cols() > matrix.rows()) return std::nullopt;
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix);
+    NonnegativeSolution solution;
+    solution.y = qr.solve(target);
+    if (!solution.y.allFinite() || solution.y.minCoeff() <= 0) return std::nullopt;
+    solution.y += qr.solve(target - matrix * solution.y);
+    solution.residual = target - matrix * solution.y;
+    const double orthogonal = support_rounding * target.norm();  // dependent columns leave more
+    if (solution.y.minCoeff() <= 0 || (matrix.transpose() * solution.residual).cwiseAbs().maxCoeff() > orthogonal) return std::nullopt;
+    for (int k = 0; k < matrix.cols(); ++k) solution.support.push_back(k);
+    solution.converged = true;
+    return solution;
+}
 
 FirstOrder first_order(const Program& program, const Boundary& boundary,
                        const std::vector<Row>& active, const Eigen::VectorXd& x) {
@@ -40,8 +59,10 @@ FirstOrder first_order(const Program& program, const Boundary& boundary,
 
     const Eigen::VectorXd gradient = program.objective_gradient(x);
     const Eigen::MatrixXd normals = boundary.normals(active);
-    const NonnegativeSolution solution =
-        nonnegative_least_squares((normals * basis).transpose(), -(basis.transpose() * gradient));
+    const Eigen::MatrixXd pushes = (normals * basis).transpose();
+    const Eigen::VectorXd pull = -(basis.transpose() * gradient);
+    auto together = all_supporting(pushes, pull);
+    const NonnegativeSolution solution = together ? std::move(*together) : nonnegative_least_squares(pushes, pull);
 
     FirstOrder result;
     result.direction = basis * solution.residual;
@@ -125,7 +146,7 @@ Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundar
 Eigen::VectorXd escape_direction(const Program& program, const Boundary& boundary,
                                  const std::vector<Row>& active, const Eigen::VectorXd& x,
                                  double sphere_multiplier) {
-    const Eigen::MatrixXd basis = null_space(boundary.flat(active), x.size());
+    const Eigen::MatrixXd basis = boundary.directions(active);
     const auto [span, hessian] = tangent_of(program, boundary, basis, x, sphere_multiplier);
     if (span.cols() == 0) return {};
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(hessian);
@@ -139,7 +160,7 @@ bool escaped(const Program& program, const Boundary& boundary, const std::vector
              double sphere_multiplier, const PolishOptions& options, Polished& result) {
     const Eigen::VectorXd direction = escape_direction(program, boundary, active, result.x, sphere_multiplier);
     if (direction.size() == 0) return false;
-    const Eigen::MatrixXd basis = null_space(boundary.flat(active), result.x.size());
+    const Eigen::MatrixXd basis = boundary.directions(active);
     for (const double side : {0.5, -0.5}) {  // half the radius of the sphere
         std::vector<Row> blocking;
         double step = boundary.step_to_boundary(result.x, side * direction, 1e-14, blocking);
@@ -199,13 +220,11 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
     result.x = start;
     if (start.size() != program.variables() || !start.allFinite()) return result;
     const Boundary boundary(program);
-    const auto n = program.variables();
-
     // Clean the start: its active rows hold exactly, and it lies on the sphere.
     {
         const auto rows = boundary.active(start, options.activity);
         Eigen::VectorXd x = boundary.project(rows, start);
-        if (boundary.retract(null_space(boundary.flat(rows), n), x) &&
+        if (boundary.retract(boundary.directions(rows), x) &&
             program.violation(x) <= std::max(options.feasibility, program.violation(start))) {
             result.x = std::move(x);
         }
@@ -228,7 +247,7 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
             const double rounding = 1e-9 * order.direction.norm() + 1e-14 * gradient_scale;
             if (rate >= -rounding) working.push_back(row);
         }
-        const Eigen::MatrixXd basis = null_space(boundary.flat(working), n);
+        const Eigen::MatrixXd basis = boundary.directions(working);
         bool moved = false;
         for (const bool newton : {true, false}) {
             Eigen::VectorXd direction =
@@ -241,7 +260,7 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
             for (int halving = 0; halving < halvings_limit && !moved; ++halving) {
                 const auto& rows = halving == 0 ? blocked : working;
                 Eigen::VectorXd x = boundary.project(rows, result.x + step * direction);
-                if (boundary.retract(null_space(boundary.flat(rows), n), x) &&
+                if (boundary.retract(boundary.directions(rows), x) &&
                     program.violation(x) <= options.feasibility) {
                     const double objective = program.objective(x);
                     const double rounding =
@@ -271,7 +290,7 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
         if (order.multipliers.residual <= options.stationarity) break;
         const auto rows = boundary.active(result.x, near);
         Eigen::VectorXd x = boundary.project(rows, result.x);
-        if (!boundary.retract(null_space(boundary.flat(rows), n), x) || program.violation(x) > options.feasibility) continue;
+        if (!boundary.retract(boundary.directions(rows), x) || program.violation(x) > options.feasibility) continue;
         FirstOrder there = first_order(program, boundary, boundary.active(x, options.activity), x);
         if (there.multipliers.residual > options.stationarity) continue;
         result.x = std::move(x);

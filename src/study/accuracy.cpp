@@ -18,7 +18,7 @@ constexpr double levels_of_greatest[] = {0.8};      // times E_max
 // Beyond this size a derivative-free method only meets its limit.
 constexpr int derivative_free_limit = 32;
 constexpr int quick_derivative_free_limit = 2;
-constexpr double slow_run = 0.5;  // seconds; such work is not repeated
+constexpr double slow_run = 0.2;  // seconds; such work is not repeated
 
 bool derivative_free(const ProgramMethod& method) {
     return method.kind == ProgramMethod::Kind::nlopt &&
