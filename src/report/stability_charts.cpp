@@ -137,6 +137,7 @@ Chart difficulty_chart(const AccuracyResults& results, const Pattern& pattern, c
             map.columns[column] = record->difficulty;
             map.cells.push_back(cell(*record, Shown::failures, record->column, place(methods, record->method), 0, 1));
         }
+        if (map.cells.empty()) continue;
         map.rows = k == 1 ? std::vector<std::string>(methods.size()) : methods;
         add_heat_map(chart, map, frames[k][0], frames[k][1], frames[k][2], frames[k][3]);
     }

@@ -59,12 +59,6 @@ TEST(ProductBound, NeverExceedsAPointOfTheLevel) {
     }
 }
 
-TEST(ProductBound, NoContactConditionIsNoBound) {
-    const auto problem = nsma::pattern_problem({6, 16, 4}, 0);
-    const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, 1.0, 1.0);
-    EXPECT_EQ(nsma::product_bound(program.program), -nsma::no_bound);
-}
-
 TEST(ConicBound, ClosesTheGapThatTheLagrangianLeaves) {
     const Simplex simplex(8, 0.3875);  // three amplitudes are left
     const double target = 88.0 / simplex.program.objective_unit;
