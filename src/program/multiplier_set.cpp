@@ -16,6 +16,15 @@ namespace {
 // CLP works to 1e-9; what it answers is solved again on its support and judged by its dual.
 constexpr double certificate_tolerance = 1e-9;
 
+// Rank decisions as the singular values are judged: what is not clearly independent is dependent.
+Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposed(const Eigen::MatrixXd& matrix,
+                                                                   const MagnitudeBounds& magnitude) {
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+    decomposition.setThreshold(magnitude.positive);
+    decomposition.compute(matrix);
+    return decomposition;
+}
+
 double smallest(const Eigen::VectorXd& values) { return values.size() > 0 ? values.minCoeff() : 0.0; }
 
 }  // namespace
@@ -40,7 +49,12 @@ MultiplierSet::MultiplierSet(Eigen::MatrixXd normals, Eigen::MatrixXd smooth, Ei
       magnitude_(magnitude), scale_(1.0 + gradient_.norm()) {
     bool clear = true;
     const Eigen::MatrixXd basis = orthogonal_space(smooth_, gradient_.size(), magnitude_, clear);
-    const Eigen::MatrixXd columns = basis.transpose() * normals_.transpose();
+    Eigen::MatrixXd columns = basis.transpose() * normals_.transpose();
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+        const Magnitude size = magnitude_(columns.col(i).norm());
+        if (size == Magnitude::unclear) clear = false;
+        if (size == Magnitude::zero) columns.col(i).setZero();  // its rounding is no direction
+    }
     const Eigen::VectorXd wanted = -(basis.transpose() * gradient_);
     const NonnegativeSolution nearest = nonnegative_least_squares(columns, wanted);
     y_ = nearest.y;
@@ -81,7 +95,7 @@ MultiplierSet::MultiplierSet(Eigen::MatrixXd normals, Eigen::MatrixXd smooth, Ei
 Eigen::VectorXd MultiplierSet::smooth() const {
     if (smooth_.rows() == 0) return {};
     const Eigen::VectorXd balance = gradient_ + normals_.transpose() * y_;
-    return smooth_.transpose().completeOrthogonalDecomposition().solve(-balance);
+    return decomposed(smooth_.transpose(), magnitude_).solve(-balance);
 }
 
 double MultiplierSet::residual() const {
@@ -137,7 +151,7 @@ MultiplierSet::Greatest MultiplierSet::greatest(const Eigen::VectorXd& a, const 
     // w = -pinv(smooth')(gradient + normals' y), so w . b = -(gradient + normals' y) . step.
     Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient_.size());
     if (smooth_.rows() > 0) {
-        const auto decomposition = smooth_.completeOrthogonalDecomposition();
+        const auto decomposition = decomposed(smooth_, magnitude_);
         step = decomposition.solve(b);
         step += decomposition.solve(b - smooth_ * step);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include <Eigen/Eigenvalues>
@@ -53,12 +54,7 @@ OptimumAnalysis::OptimumAnalysis(const RelaxedSet& relaxed, Objective asked, std
         x = polished.x;
         feasible = polished.feasible;
     }
-    beta = form.beta(x);
-    value = form.program.objective(x) * form.objective_unit;
-    gradient_ = form.program.objective_gradient(x);
-    gradient_scale_ = 1.0 + gradient_.norm();
-    sphere_ = Eigen::VectorXd::Zero(x.size());
-    if (has_sphere_) sphere_.head(form.orbit_variables) = x.head(form.orbit_variables);
+    set_point(x);
     find_active();
     if (!feasible) {
         refusal = "the point is not admissible to rounding";
@@ -66,6 +62,16 @@ OptimumAnalysis::OptimumAnalysis(const RelaxedSet& relaxed, Objective asked, std
     }
     find_place();
     find_multipliers();
+}
+
+void OptimumAnalysis::set_point(const Eigen::VectorXd& point) {
+    x = point;
+    beta = form.beta(x);
+    value = form.program.objective(x) * form.objective_unit;
+    gradient_ = form.program.objective_gradient(x);
+    gradient_scale_ = 1.0 + gradient_.norm();
+    sphere_ = Eigen::VectorXd::Zero(x.size());
+    if (has_sphere_) sphere_.head(form.orbit_variables) = x.head(form.orbit_variables);
 }
 
 // Ends of the energy interval are points of their own: rounding of the level must not move them
@@ -106,7 +112,7 @@ void OptimumAnalysis::find_place() {
     const Magnitude falls = descends(normals_, equalities_, sphere_, magnitude_);
     const Magnitude grows = descends(normals_, equalities_, -sphere_, magnitude_);
     if (falls == Magnitude::unclear || grows == Magnitude::unclear) {
-        refusal = "the level is neither clearly an end of the energy interval nor inside it";
+        refusal = "the energy level is nearly tangent to the active rows";
         return;
     }
     if (falls == Magnitude::positive && grows == Magnitude::positive) {
@@ -146,7 +152,12 @@ MultiplierSet OptimumAnalysis::energy_multipliers(double sign, bool banded) cons
 
 void OptimumAnalysis::find_multipliers() {
     if (place_ == Place::root) return;
-    const MultiplierSet multiplier_set = multipliers(false);
+    MultiplierSet multiplier_set = multipliers(false);
+    if (multiplier_set.status() == MultiplierSet::Status::unclear && place_ == Place::inside) {
+        mu_ = multiplier_set.smooth()[equalities_.rows()];
+        newton_step();
+        multiplier_set = multipliers(false);
+    }
     const auto status = multiplier_set.status();
     if (status == MultiplierSet::Status::empty || status == MultiplierSet::Status::unclear) {
         if (refusal.empty()) {
@@ -169,7 +180,26 @@ void OptimumAnalysis::find_multipliers() {
         if (magnitude_(greatest[i] / gradient_scale_) == Magnitude::positive) held.push_back(i);
     }
     strict = held.size() == active.size();
-    if (!second_order(held)) refusal = "the optimum is not isolated";
+    if (!second_order(held)) refusal = "the optimum is not isolated: orbits of the same objective may lie beside it";
+}
+
+// One Newton step along the directions that clearly curve. A flat direction stops polish() where
+// the objective no longer shows its progress, some 1e-8 away in the others.
+void OptimumAnalysis::newton_step() {
+    std::vector<Eigen::Index> all(active.size());
+    std::iota(all.begin(), all.end(), Eigen::Index{0});
+    const Eigen::MatrixXd flat = held_flat(all, true);
+    if (flat.cols() == 0) return;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(flat.transpose() * lagrangian() * flat);
+    const Eigen::VectorXd slope = spectrum.eigenvectors().transpose() * (flat.transpose() * gradient_);
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(slope.size());
+    for (Eigen::Index i = 0; i < slope.size(); ++i) {
+        const double curvature = spectrum.eigenvalues()[i];
+        if (curvature > magnitude_.positive * gradient_scale_) step[i] = -slope[i] / curvature;
+    }
+    const Eigen::VectorXd moved = x + flat * (spectrum.eigenvectors() * step);
+    if (form.program.violation(moved) > magnitude_.zero) return;
+    set_point(moved);
 }
 
 // Directions that keep the held rows, COND2 and, if asked, the energy.

@@ -75,9 +75,11 @@ public:
 
 private:
     [[nodiscard]] bool settle();
+    void set_point(const Eigen::VectorXd& point);
     void find_active();
     void find_place();
     void find_multipliers();
+    void newton_step();
     [[nodiscard]] bool second_order(const std::vector<Eigen::Index>& held);
     [[nodiscard]] Eigen::MatrixXd held_flat(const std::vector<Eigen::Index>& held, bool with_sphere) const;
     [[nodiscard]] Eigen::MatrixXd lagrangian() const;
