@@ -12,7 +12,7 @@
 namespace nsma {
 namespace {
 
-// CLP works to 1e-9; rows are scaled to order one.
+// CLP works to 1e-9, rows are scaled to order one: a vertex may be this far from its rows.
 constexpr double activity = 1e-7;
 // The rays and nonzero points sought lie in a unit box over small integer rows.
 constexpr double direction_tolerance = 1e-7;
@@ -58,9 +58,8 @@ private:
     LinearSolver solver_;
 };
 
-// Moves a point onto the rows that are nearly active there, so that only rounding is left.
-Eigen::VectorXd sharpened(const Program& program, Eigen::VectorXd x) {
-    const double tolerance = activity * (1.0 + x.cwiseAbs().maxCoeff());
+// Moves a point onto the rows within `tolerance`, so that only rounding is left.
+Eigen::VectorXd onto_rows(const Program& program, Eigen::VectorXd x, double tolerance) {
     const Eigen::VectorXd slack = program.inequality_values - program.inequalities * x;
     std::vector<Eigen::Index> active;
     for (Eigen::Index i = 0; i < slack.size(); ++i) {
@@ -81,6 +80,17 @@ Eigen::VectorXd sharpened(const Program& program, Eigen::VectorXd x) {
     decomposition.setThreshold(1e-11);
     decomposition.compute(system);
     for (int pass = 0; pass < 2; ++pass) x += decomposition.solve(target - system * x);
+    return x;
+}
+
+// The same with the widest tolerance whose rows do meet in a point of the set: rows a small
+// relaxation apart are not one vertex.
+Eigen::VectorXd sharpened(const Program& program, const Eigen::VectorXd& x) {
+    const double size = 1.0 + x.cwiseAbs().maxCoeff();
+    for (const double tolerance : {activity, 1e-2 * activity}) {
+        Eigen::VectorXd moved = onto_rows(program, x, tolerance * size);
+        if (program.violation(moved) <= PolishOptions{}.feasibility * size) return moved;
+    }
     return x;
 }
 
@@ -265,6 +275,11 @@ RelaxedOptimum relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& int
     nearest.hessian.makeCompressed();
     for (const auto& beta : request.near) {
         const Eigen::VectorXd wanted = beta / form.scale;
+        nearest.gradient.setZero();
+        if (nearest.violation(wanted) <= PolishOptions{}.activity) {
+            attempt(wanted);
+            continue;
+        }
         nearest.gradient = -2.0 * wanted;
         const Polished closest = polish(nearest, base);
         if (closest.feasible) attempt(closest.x);
