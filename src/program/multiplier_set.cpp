@@ -148,6 +148,7 @@ MultiplierSet::Greatest MultiplierSet::least_over_set(const Eigen::VectorXd& cos
 }
 
 MultiplierSet::Greatest MultiplierSet::greatest(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    if (status_ != Status::one && status_ != Status::many) return {};
     // w = -pinv(smooth')(gradient + normals' y), so w . b = -(gradient + normals' y) . step.
     Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient_.size());
     if (smooth_.rows() > 0) {

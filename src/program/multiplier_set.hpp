@@ -43,8 +43,8 @@ public:
         double value = 0;
         Eigen::VectorXd y;  ///< an element that attains it
     };
-    /// Greatest -(y . a + w . b) over the set, which must be `one` or `many` and `smooth` of full
-    /// row rank. The linear program's answer is accepted only with its dual.
+    /// Greatest -(y . a + w . b) over the set, `smooth` of full row rank; unclear unless the status
+    /// is `one` or `many`. The linear program's answer is accepted only with its dual.
     [[nodiscard]] Greatest greatest(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
     /// Greatest of each y_i over the set, up to 1 + |gradient|; negative where unclear.
     [[nodiscard]] Eigen::VectorXd greatest_normals() const;
