@@ -27,9 +27,10 @@ Slope from_sides(const Side& right, const Side& left) {
         return slope;
     }
     slope.kind = Slope::Kind::one_sided;
-    if (right.status == Side::Status::finite) slope.right = right.value;
+    // + 0.0: no negative zeros in tables
+    if (right.status == Side::Status::finite) slope.right = right.value + 0.0;
     if (right.status == Side::Status::root) slope.right_root = right.value;
-    if (left.status == Side::Status::finite) slope.left = -left.value;
+    if (left.status == Side::Status::finite) slope.left = 0.0 - left.value;
     if (left.status == Side::Status::root) slope.left_root = left.value;
     if (slope.right && slope.left &&
         std::abs(*slope.right - *slope.left) <=
@@ -37,7 +38,7 @@ Slope from_sides(const Side& right, const Side& left) {
         slope.kind = Slope::Kind::two_sided;
         slope.left = slope.right;
     } else if (slope.reason.empty()) {
-        slope.reason = "the multipliers are not unique: the sides differ";
+        slope.reason = "several multipliers or several optima: the sides differ";
     }
     return slope;
 }
