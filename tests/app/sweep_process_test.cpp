@@ -30,6 +30,12 @@ std::string contents(const fs::path& file) {
     return text.str();
 }
 
+/// What the machine may refuse the started program.
+struct Limits {
+    rlim_t file_size = RLIM_INFINITY;  ///< bytes; a write beyond fails, as on a full disk
+    bool no_rights = false;            ///< not root, for whom every folder is writable
+};
+
 class SweepProcess : public testing::Test {
 protected:
     void SetUp() override {
@@ -47,12 +53,6 @@ protected:
                                       << levels << "\n[program]\nobjective = \"" << objective << "\"\n";
         return (folder_ / name).string();
     }
-
-    /// What the machine may refuse the started program.
-    struct Limits {
-        rlim_t file_size = RLIM_INFINITY;  ///< bytes; a write beyond fails, as on a full disk
-        bool no_rights = false;            ///< not root, for whom every folder is writable
-    };
 
     pid_t start(std::vector<std::string> words, Limits limits = {}) {
         std::vector<char*> pointers;
@@ -200,13 +200,15 @@ TEST_F(SweepProcess, AReadOnlyFolderIsRefusedAndKept) {
     const int code = run(sweep(scene_, out));
     EXPECT_TRUE(code == 0 || code == 4) << output();
     const std::string store = contents(out / "results.sqlite");
-    const auto shut = fs::perms::group_write | fs::perms::others_write | fs::perms::owner_write;
+    constexpr auto shut = fs::perms::group_write | fs::perms::others_write | fs::perms::owner_write;
     fs::permissions(folder_, fs::perms::others_read | fs::perms::others_exec | fs::perms::group_read | fs::perms::group_exec, fs::perm_options::add);
     for (const auto& place : {out / "charts", out}) fs::permissions(place, shut, fs::perm_options::remove);
     for (const auto& words : {sweep(scene_, out), sweep(scene_, out, true), sweep(scene_, out / "new"),
                               std::vector<std::string>{NSMA_PROGRAM, "export", out.string()},
                               std::vector<std::string>{NSMA_PROGRAM, "plot", out.string()}}) {
-        EXPECT_EQ(run(words, {.no_rights = true}), 2) << words[1] << ": " << output();
+        const int refused = run(words, {.no_rights = true});
+        if (refused == 126 || refused == 127) GTEST_SKIP() << "no other user, or none who reaches the program";
+        EXPECT_EQ(refused, 2) << words[1] << ": " << output();
         EXPECT_NE(output().find(out.string()), std::string::npos) << output();
         EXPECT_EQ(output().find('\n'), output().size() - 1) << output();
     }
