@@ -8,6 +8,8 @@
 #include "nsma/program/least_squares.hpp"
 #include "nsma/program/linear_program.hpp"
 
+#include "known_set.hpp"
+
 namespace nsma {
 namespace {
 
@@ -274,6 +276,11 @@ AdmissibleSet admissible_set(Reduction reduction, const AdmissibleOptions& optio
         return set;
     }
     set.flat_dimension = data.variables() - (data.contact_row.isZero() ? 0 : 1);
+    if (options.closed_form) set.shape = shape_of(data);
+    if (set.shape != AdmissibleSet::Shape::general) {
+        decide_in_closed_form(set, options);
+        return set;
+    }
     if (data.gap_sign == 0) {
         decide_closed_gap(set, options);
         return set;

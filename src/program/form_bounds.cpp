@@ -46,8 +46,10 @@ std::vector<int> partial_sum_row(const Kernel& kernel, int step) {
     return row;
 }
 
-FormBounds::FormBounds(const Kernel& kernel, const Reduction& reduction)
-    : kernel_(kernel), reduction_(reduction), dual_(dual_program(reduction)) {
+FormBounds::FormBounds(const Kernel& kernel, const Reduction& reduction, AdmissibleSet::Shape shape)
+    : kernel_(kernel), reduction_(reduction), shape_(shape) {
+    if (shape_ == AdmissibleSet::Shape::chain) chain_ = chain_rows(reduction);
+    if (shape_ == AdmissibleSet::Shape::general) dual_.emplace(dual_program(reduction));
     const Eigen::VectorXi row = contact_row(kernel);
     contact_.assign(row.data(), row.data() + row.size());
     const Conditions terms = conditions(kernel, reduction.gap_sign);
@@ -96,7 +98,42 @@ void FormBounds::cover_forced(const std::vector<Rational>& form, RowCombination&
     }
 }
 
+// The sum of all gamma_j is delta/c, so the greatest coefficient decides.
+RowCombination FormBounds::simplex_bound(const std::vector<Rational>& form) const {
+    return {{}, *std::max_element(form.begin(), form.end()) / reduction_.contact_row[0]};
+}
+
+// By parts, form . gamma = sum_k (f_k - f_{k+1}) P_k + f_n P_n: a positive difference takes P_k <= 0, a negative one
+// P_n - P_k <= 0, and what is left is a multiple of COND2.
+RowCombination FormBounds::chain_bound(const std::vector<Rational>& form) const {
+    RowCombination result;
+    Rational rest = form.back();
+    for (std::size_t k = 1; k < form.size(); ++k) {
+        const Rational difference = form[k - 1] - form[k];
+        if (difference == 0) continue;
+        const int row = difference > 0 ? chain_.prefix[k] : chain_.suffix[k];
+        result.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(row)], abs(difference));
+        if (difference < 0) rest += difference;
+    }
+    std::sort(result.rows.begin(), result.rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    result.contact = rest / reduction_.contact_row[0];
+    return result;
+}
+
 std::optional<FormBound> FormBounds::bound(const std::vector<Rational>& form) {
+    std::optional<RowCombination> proof;
+    switch (shape_) {
+        case AdmissibleSet::Shape::simplex: proof = simplex_bound(form); break;
+        case AdmissibleSet::Shape::chain: proof = chain_bound(form); break;
+        case AdmissibleSet::Shape::general: proof = program_bound(form); break;
+    }
+    if (!proof) return std::nullopt;
+    const auto full = unreduced(form);
+    cover_forced(full, *proof);
+    return FormBound{sparse(full), std::move(*proof)};
+}
+
+std::optional<RowCombination> FormBounds::program_bound(const std::vector<Rational>& form) {
     const auto n = static_cast<Eigen::Index>(reduction_.variables());
     const auto count = reduction_.rows.rows();
     double scale = 0;
@@ -108,11 +145,11 @@ std::optional<FormBound> FormBounds::bound(const std::vector<Rational>& form) {
     for (Eigen::Index j = 0; j < n; ++j) {
         const double value = to_double(form[static_cast<std::size_t>(j)]) / scale;
         const bool bounded = reduction_.bounded[static_cast<std::size_t>(j)] != 0;
-        dual_.set_row_bounds(j, value, bounded ? no_bound : value);
+        dual_->set_row_bounds(j, value, bounded ? no_bound : value);
     }
     Eigen::VectorXd cost = Eigen::VectorXd::Zero(count + 1);
     cost[count] = reduction_.gap_sign;
-    const LinearSolution solution = dual_.minimise(cost);
+    const LinearSolution solution = dual_->minimise(cost);
     if (solution.status != LinearStatus::optimal) return std::nullopt;
 
     // The same vertex in fractions: unknowns are the basic multipliers, equations the tight columns.
@@ -140,18 +177,15 @@ std::optional<FormBound> FormBounds::bound(const std::vector<Rational>& form) {
     }
     const auto solved = solve_exactly(std::move(a), std::move(b));
     if (!solved || solved->size() != support.size()) return std::nullopt;
-    FormBound result;
-    const auto full = unreduced(form);
-    result.form = sparse(full);
+    RowCombination result;
     for (std::size_t k = 0; k < support.size(); ++k) {
         Rational value = (*solved)[k] / common;
         if (support[k] == count) {
-            result.proof.contact = std::move(value);
+            result.contact = std::move(value);
         } else if (value != 0) {
-            result.proof.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(support[k])], std::move(value));
+            result.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(support[k])], std::move(value));
         }
     }
-    cover_forced(full, result.proof);
     return result;
 }
 

@@ -3,9 +3,11 @@
 #include <optional>
 #include <vector>
 
+#include "nsma/program/admissible_set.hpp"
 #include "nsma/program/certificate.hpp"
 #include "nsma/program/linear_program.hpp"
-#include "nsma/program/reduction.hpp"
+
+#include "known_set.hpp"
 
 namespace nsma {
 
@@ -13,7 +15,8 @@ namespace nsma {
 /// unreduced conditions.
 class FormBounds {
 public:
-    FormBounds(const Kernel& kernel, const Reduction& reduction);
+    /// Of a known shape the bounds are known as well, else CLP finds them.
+    FormBounds(const Kernel& kernel, const Reduction& reduction, AdmissibleSet::Shape shape);
 
     /// The least upper bound of form . gamma (integers, size n) with exact multipliers, or
     /// absent where the linear program or its exact repetition fails.
@@ -27,11 +30,17 @@ public:
     [[nodiscard]] std::vector<Rational> unreduced(const std::vector<Rational>& form) const;
 
 private:
+    [[nodiscard]] RowCombination simplex_bound(const std::vector<Rational>& form) const;
+    [[nodiscard]] RowCombination chain_bound(const std::vector<Rational>& form) const;
+    [[nodiscard]] std::optional<RowCombination> program_bound(const std::vector<Rational>& form);
+
     const Kernel& kernel_;
     const Reduction& reduction_;
     std::vector<int> contact_;        // w over all columns of beta
     std::vector<int> forced_flip_;    // flip of each forced zero, in order
-    LinearSolver dual_;
+    AdmissibleSet::Shape shape_;
+    ChainRows chain_;                   // of a chain
+    std::optional<LinearSolver> dual_;  // of a general set
 };
 
 [[nodiscard]] RationalVector sparse(const std::vector<Rational>& dense);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int halvings_limit = 40;
 constexpr double objective_rounding = 1e-15;  // relative to 1 + |f|: a few units in the last place
+constexpr double nearly_active = 1e-6;  // slack from which descent no longer comes to a row by itself
 constexpr double rank_tolerance = 1e-11;  // rows are scaled to order one
 
 enum class Kind { inequality, lower, upper };
@@ -27,8 +28,10 @@ Eigen::MatrixXd null_space(const Eigen::MatrixXd& matrix, Eigen::Index n) {
     if (matrix.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
     qr.setThreshold(rank_tolerance);
-    const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
-    return q.rightCols(n - qr.rank());
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(n, n - qr.rank());
+    basis.bottomRows(basis.cols()).setIdentity();
+    basis.applyOnTheLeft(qr.householderQ().setLength(qr.rank()));
+    return basis;
 }
 
 // The feasible set as rows a.x <= b, equalities apart, and the moves along its boundary.
@@ -350,6 +353,19 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
             if (moved) break;
         }
         if (!moved) break;
+    }
+    // Where the sphere passes through a vertex, descent along its edges only creeps towards it: rows that are almost
+    // active are tried as active.
+    for (double near = 1e2 * options.activity; near <= nearly_active; near *= 10) {
+        if (order.multipliers.residual <= options.stationarity) break;
+        const auto rows = boundary.active(result.x, near);
+        Eigen::VectorXd x = boundary.project(rows, result.x);
+        if (!boundary.retract(null_space(boundary.flat(rows), n), x) || program.violation(x) > options.feasibility) continue;
+        FirstOrder there = first_order(program, boundary, boundary.active(x, options.activity), x);
+        if (there.multipliers.residual > options.stationarity) continue;
+        result.x = std::move(x);
+        result.objective = program.objective(result.x);
+        order = std::move(there);
     }
     result.feasible = program.violation(result.x) <= options.feasibility;
     result.multipliers = order.multipliers;

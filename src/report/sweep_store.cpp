@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <iterator>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -129,8 +131,7 @@ struct SweepStore::Implementation {
         try {
             return call();
         } catch (const SQLite::Exception& error) {
-            const int code = error.getErrorCode();
-            if (code == 5 || code == 6) fail(file, "is in use by another process");
+            if (is_locked(error)) fail(file, "is in use by another process");
             fail(file, fmt::format("cannot be {}: {}", doing, error.getErrorStr()));
         } catch (const std::invalid_argument& error) {
             fail(file, fmt::format("cannot be {}: {}", doing, error.what()));
@@ -140,18 +141,36 @@ struct SweepStore::Implementation {
     void open(const fs::path& path, bool write) {
         file = path;
         guarded("opened", [&] {
-            const int flags = write ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE : SQLite::OPEN_READONLY;
-            // A process that just ended may still be letting go of the file.
-            constexpr int patience = 3000;  // ms
-            database = std::make_unique<SQLite::Database>(file.string(), flags, patience);
-            if (!write) return;
-            // One writer, no shared memory: also safe on a network file system.
-            database->exec("PRAGMA locking_mode=EXCLUSIVE");
-            database->exec("PRAGMA journal_mode=WAL");
-            database->exec("PRAGMA synchronous=NORMAL");
-            database->exec("BEGIN EXCLUSIVE");
-            database->exec("COMMIT");
+            // A process that just ended may still be letting go of the file, and SQLite takes an exclusive lock of a
+            // journal without waiting.
+            constexpr int tries = 60;
+            constexpr std::chrono::milliseconds pause{50};
+            for (int i = 1;; ++i) {
+                try {
+                    return connect(write);
+                } catch (const SQLite::Exception& error) {
+                    database.reset();
+                    if (i == tries || !is_locked(error)) throw;
+                    std::this_thread::sleep_for(pause);
+                }
+            }
         });
+    }
+
+    void connect(bool write) {
+        const int flags = write ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE : SQLite::OPEN_READONLY;
+        database = std::make_unique<SQLite::Database>(file.string(), flags);
+        if (!write) return;
+        // One writer, no shared memory: also safe on a network file system.
+        database->exec("PRAGMA locking_mode=EXCLUSIVE");
+        database->exec("PRAGMA journal_mode=WAL");
+        database->exec("PRAGMA synchronous=NORMAL");
+        database->exec("BEGIN EXCLUSIVE");
+        database->exec("COMMIT");
+    }
+
+    static bool is_locked(const SQLite::Exception& error) {
+        return error.getErrorCode() == 5 || error.getErrorCode() == 6;  // SQLITE_BUSY, SQLITE_LOCKED
     }
 
     void close() {

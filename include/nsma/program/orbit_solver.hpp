@@ -38,12 +38,13 @@ enum class SolverChoice {
 
 struct OrbitSolverOptions {
     SolverChoice solvers = SolverChoice::both;
-    int starts = 8;                     ///< starts per solver while the optimum is not proved, >= 1
+    /// Starts per solver while the optimum is not proved, >= 1; above 64 unknowns a quarter of them.
+    int starts = 8;
     double agreement_tolerance = 1e-6;  ///< relative difference of objectives that still agree
     double raw_violation = 1e-4;        ///< a raw answer further out is a failure of its solver
     double level_tolerance = 1e-15;     ///< relative; a level this close to an end is the end
     /// Relaxations spent on the bound of one answer, 0: none. Above 10 unknowns, where each takes
-    /// longer, an eighth of them, and shorter ones.
+    /// longer, an eighth of them, and shorter ones; above 48 none.
     int bound_nodes = 32;
     SolverOptions solver;
 };

@@ -40,7 +40,8 @@ struct PolishOptions {
 
 /// Active-set descent from a feasible point: Newton steps on the flat of the active rows cut
 /// with the sphere, blocked by the other rows, until the projection of -gradient on the tangent
-/// cone vanishes. The objective never rises, rounding aside. `start` must be feasible to 1e-9.
+/// cone vanishes. The objective never rises, but for rounding and for the last step to a vertex on the sphere that is
+/// less than 1e-6 away. `start` must be feasible to 1e-9.
 [[nodiscard]] Polished polish(const Program& program, const Eigen::VectorXd& start,
                               const PolishOptions& options = {});
 

@@ -1,0 +1,264 @@
+#include "search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nsma/program/conic_bound.hpp"
+#include "nsma/program/lifted_program.hpp"
+#include "nsma/program/restore.hpp"
+
+namespace nsma {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// Unknowns beyond which a relaxation takes long enough to be counted eightfold.
+constexpr int costly_relaxation = 10;
+// Unknowns beyond which SLSQP, whose steps cost their cube, is left to the augmented Lagrangian with L-BFGS, and a quarter
+// of the starts is made, each of which costs as much as all of a small program.
+constexpr Eigen::Index slsqp_limit = 64;
+// Unknowns beyond which a relaxation, a matrix of their square under hundreds of eigenvalue decompositions, costs more
+// than all the rest; the bound of the Lagrangian stands.
+constexpr int relaxation_limit = 48;
+
+}  // namespace
+
+double Goal::value(const Eigen::VectorXd& gamma) const {
+    return objective_of_waves(problem.kernel, objective, problem.set.reduction.beta(gamma), reference);
+}
+
+double Goal::rank(const Eigen::VectorXd& gamma) const {
+    return objective == Objective::max_energy ? -value(gamma) : value(gamma);
+}
+
+Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const PatternProblem& problem,
+               const OrbitRequest& request, const Goal& goal, double least_energy)
+    : options_(options), ipopt_solver_(ipopt), problem_(problem), goal_(goal),
+      program_(orbit_program(problem.set.reduction, problem.kernel, goal.objective, request.level, least_energy, goal.reference)),
+      with_ipopt_(options.solvers != SolverChoice::nlopt), with_nlopt_(options.solvers != SolverChoice::ipopt), starts_(options.starts) {
+    if (request.level) level_.emplace(problem.set, *request.level);
+    if (program_.program.variables() > slsqp_limit) starts_ = (starts_ + 3) / 4;
+}
+
+std::optional<Best> Search::run() {
+    const bool until_proved = options_.solvers == SolverChoice::proof;
+    if (until_proved) {
+        if (auto point = segment(); point && point->optimality.global) return point;
+    }
+    if (with_nlopt_) search_with_nlopt();
+    if (until_proved && nlopt_.usable) {
+        settle();
+        if (nlopt_.optimality.global) return nlopt_;
+    }
+    if (with_ipopt_) search_with_ipopt();
+    if (with_nlopt_ && with_ipopt_) {
+        if (ipopt_.usable && !not_worse(nlopt_, ipopt_)) search_with_nlopt();
+        // Where one still holds a worse optimum it is asked about the better one: does it, started off to the side, come
+        // to the same point?
+        ask(nlopt_, ipopt_, "ipopt");
+        ask(ipopt_, nlopt_, "nlopt");
+    }
+    settle();
+    return std::nullopt;
+}
+
+std::optional<Eigen::VectorXd> Search::start(int k) const {
+    if (level_) return level_->start(k);
+    const auto& vertices = problem_.set.vertices;
+    if (vertices.empty()) return problem_.set.least;
+    return vertices[static_cast<std::size_t>(k) % vertices.size()];
+}
+
+// A point on the level a tenth of the way from `gamma` to start k.
+std::optional<Eigen::VectorXd> Search::aside_of(const Eigen::VectorXd& gamma, int k) const {
+    const auto other = start(k);
+    if (!other) return std::nullopt;
+    Eigen::VectorXd aside = 0.9 * gamma + 0.1 * *other;
+    return level_ ? level_->reach(aside) : std::optional(std::move(aside));
+}
+
+// NLopt is some twenty times cheaper a call, so it does the search among local optima.
+void Search::search_with_nlopt() {
+    for (int k = 0; k < starts_ && !nlopt_.optimality.global; ++k, ++next_) {
+        const auto begin = start(next_);
+        if (!begin) return;
+        attempt(*begin, "nlopt", next_, nlopt_);
+    }
+}
+
+// Starts elsewhere, and goes on to further starts only while Ipopt holds a worse optimum.
+void Search::search_with_ipopt() {
+    for (int k = 0; k < starts_ && !ipopt_.optimality.global; ++k) {
+        const int number = k == 0 ? 0 : next_++;
+        const auto begin = start(number);
+        if (!begin) return;
+        attempt(*begin, "ipopt", number, ipopt_);
+        if (with_nlopt_ && nlopt_.usable && not_worse(ipopt_, nlopt_)) return;
+    }
+}
+
+void Search::ask(const Best& better, Best& worse, const char* solver) {
+    if (!better.usable || not_worse(worse, better)) return;
+    const int number = next_++;
+    if (const auto aside = aside_of(better.candidate.gamma, number)) attempt(*aside, solver, number, worse);
+}
+
+// Where the Lagrangian leaves a gap: bounds the objective by relaxations, whose solutions are starts that find better
+// optima; the solvers are then asked about those.
+void Search::settle() {
+    const Best* best = &ipopt_;
+    if (nlopt_.usable && nlopt_.rank < best->rank) best = &nlopt_;
+    const int unknowns = problem_.set.reduction.variables();
+    if (options_.bound_nodes < 1 || unknowns > relaxation_limit || !best->usable || best->optimality.global || !level_) return;
+    std::optional<Polished> better;
+    double objective = program_.program.objective(program_.point(best->candidate.gamma));
+    ConicBoundOptions bounding;
+    const bool costly = unknowns > costly_relaxation;
+    bounding.node_limit = costly ? (options_.bound_nodes + 7) / 8 : options_.bound_nodes;
+    if (costly) bounding.max_iterations = 2'000;
+    bounding.improve = [&](const Eigen::VectorXd& x) {
+        if (const auto near = restored(program_, problem_.set, &*level_, x)) {
+            const Polished polished = polish(program_.program, program_.point(*near));
+            if (polished.feasible && polished.objective < objective * (1 - options_.agreement_tolerance)) {
+                objective = polished.objective;
+                better = polished;
+            }
+        }
+        return objective;
+    };
+    const ConicBound bound = conic_bound(program_.program, objective, bounding);
+    if (better) {
+        relaxed_ = found(*better, "relaxation");
+        if (!ipopt_.run.name.empty()) ask(relaxed_, ipopt_, "ipopt");
+        if (!nlopt_.run.name.empty()) ask(relaxed_, nlopt_, "nlopt");
+    }
+    for (Best* one : {&ipopt_, &nlopt_, &relaxed_}) {
+        if (!one->usable) continue;
+        one->optimality.nodes = bound.nodes;
+        if (bound.value > -infinity) {
+            set_bound(program_.program.objective(program_.point(one->candidate.gamma)), bound.value, one->optimality);
+        }
+    }
+}
+
+SolverOutcome Search::call(const std::string& solver, const Eigen::VectorXd& x) {
+    if (solver == "nlopt-slsqp") return solve_with_nlopt(NloptMethod::slsqp, program_.program, x, options_.solver);
+    if (solver == "nlopt-auglag") return solve_with_nlopt(NloptMethod::auglag_lbfgs, program_.program, x, options_.solver);
+    // Ipopt on the form of the program that its size prefers.
+    if (!prefers_lifted(program_, problem_.kernel)) return ipopt_solver_.solve(program_.program, x);
+    const LiftedProgram lifted = lifted_program(program_, problem_.set.reduction, problem_.kernel);
+    SolverOutcome outcome = ipopt_solver_.solve(lifted.program, lifted.point(x));
+    outcome.x.conservativeResize(x.size());
+    return outcome;
+}
+
+// One start of one solver, restored, polished and ranked; false when it is not usable. "nlopt" stands for SLSQP, then the
+// augmented Lagrangian.
+bool Search::attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best) {
+    if (solver == "nlopt") {
+        const bool small = program_.program.variables() <= slsqp_limit;
+        return (small && attempt(start, "nlopt-slsqp", number, best)) || attempt(start, "nlopt-auglag", number, best);
+    }
+    const SolverOutcome outcome = call(solver, program_.point(start));
+    SolverRun run;
+    run.name = solver;
+    run.start = number;
+    run.status = outcome.status;
+    run.iterations = outcome.iterations;
+    run.seconds = outcome.seconds;
+    run.violation = program_.program.violation(outcome.x);
+    run.objective = std::numeric_limits<double>::quiet_NaN();
+
+    Best trial;
+    if (run.violation <= options_.raw_violation) {
+        if (const auto near = restored(program_, problem_.set, level_ ? &*level_ : nullptr, outcome.x)) {
+            trial = found(polish(program_.program, program_.point(*near)), solver.c_str());
+        }
+    }
+    run.usable = trial.usable;
+    if (run.usable) run.objective = goal_.value(trial.candidate.gamma);
+    trial.run = run;
+    const bool better = trial.usable && (!best.usable || trial.rank < best.rank);
+    if (better || best.run.name.empty()) std::swap(best, trial);
+    if (!trial.run.name.empty()) others_.push_back(trial.run);
+    return run.usable;
+}
+
+// A polished point with the bound that its Lagrangian gives.
+Best Search::found(const Polished& polished, const char* method) const {
+    Best result;
+    if (!polished.feasible) return result;
+    result.usable = true;
+    result.candidate = {program_.gamma(polished.x), method};
+    result.rank = goal_.rank(result.candidate.gamma);
+    result.optimality.kkt_residual = polished.multipliers.residual;
+    if (polished.stationary && std::isfinite(polished.lower_bound)) {
+        set_bound(polished.objective, polished.lower_bound, result.optimality);
+    }
+    return result;
+}
+
+std::optional<Best> Search::segment() const {
+    const auto begin = start(0);
+    if (!begin) return std::nullopt;
+    Best best = found(polish(program_.program, program_.point(*begin)), "segment");
+    if (!best.usable) {
+        best.candidate = {*begin, "segment"};
+        best.rank = goal_.rank(*begin);
+    }
+    return best;
+}
+
+// `objective` and `bound` in the scale of the program.
+void Search::set_bound(double objective, double bound, Optimality& result) const {
+    // Rounding may put a tight bound above the value it bounds.
+    bound = std::min(bound, objective);
+    if (program_.objective_unit > 0) result.lower_bound = bound * program_.objective_unit;
+    result.gap = objective != 0 ? (objective - bound) / std::abs(objective) : 0.0;
+    result.global = result.gap <= options_.agreement_tolerance;
+}
+
+double Search::difference(const Best& a, const Best& b) const {
+    const double scale = std::max(std::abs(a.rank), std::abs(b.rank));
+    return scale > 0 ? std::abs(a.rank - b.rank) / scale : 0.0;
+}
+
+bool Search::not_worse(const Best& a, const Best& b) const {
+    return a.usable && (a.rank <= b.rank || difference(a, b) <= options_.agreement_tolerance);
+}
+
+bool Search::a_solver_came_to(const Best& best) const { return not_worse(ipopt_, best) || not_worse(nlopt_, best); }
+
+std::optional<double> Search::difference() const {
+    if (!ipopt_.usable || !nlopt_.usable) return std::nullopt;
+    return difference(ipopt_, nlopt_);
+}
+
+Agreement Search::agreement() const {
+    if (!with_ipopt_ || !with_nlopt_) {
+        return (with_ipopt_ ? ipopt_ : nlopt_).usable ? Agreement::single : Agreement::both_failed;
+    }
+    if (const auto apart = difference()) {
+        return *apart <= options_.agreement_tolerance ? Agreement::agree : Agreement::different_optimum;
+    }
+    return ipopt_.usable || nlopt_.usable ? Agreement::one_failed : Agreement::both_failed;
+}
+
+std::vector<SolverRun> Search::runs() const {
+    std::vector<SolverRun> all;
+    for (const Best* best : {&ipopt_, &nlopt_}) {
+        if (!best->run.name.empty()) all.push_back(best->run);
+    }
+    all.insert(all.end(), others_.begin(), others_.end());
+    return all;
+}
+
+std::vector<const Best*> Search::ranked() const {
+    std::vector<const Best*> all;
+    for (const Best* best : {&ipopt_, &nlopt_, &relaxed_}) {
+        if (best->usable) all.push_back(best);
+    }
+    std::stable_sort(all.begin(), all.end(), [](const Best* a, const Best* b) { return a->rank < b->rank; });
+    return all;
+}
+
+}  // namespace nsma

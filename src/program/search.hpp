@@ -1,0 +1,91 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nsma/program/level_points.hpp"
+#include "nsma/program/orbit_program.hpp"
+#include "nsma/program/orbit_solver.hpp"
+#include "nsma/program/polish.hpp"
+
+namespace nsma {
+
+/// An admissible point and how it was found.
+struct Candidate {
+    Eigen::VectorXd gamma;
+    std::string method;
+};
+
+/// The objective over the reduced variables.
+struct Goal {
+    const PatternProblem& problem;
+    Objective objective;
+    Eigen::VectorXd reference;  ///< of `nearest`
+
+    [[nodiscard]] double value(const Eigen::VectorXd& gamma) const;
+    /// Lower is better, also for max_energy.
+    [[nodiscard]] double rank(const Eigen::VectorXd& gamma) const;
+};
+
+/// The best that one solver, or a relaxation, came to.
+struct Best {
+    double rank = std::numeric_limits<double>::infinity();
+    Candidate candidate;
+    SolverRun run;
+    bool usable = false;
+    Optimality optimality;
+};
+
+/// The search for the best orbit at one level: each solver from its own starts, then the other one's optimum, then what
+/// relaxations find and bound.
+class Search {
+public:
+    Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const PatternProblem& problem, const OrbitRequest& request,
+           const Goal& goal, double least_energy);
+
+    /// With SolverChoice::proof it ends at the first answer proved to be the best, which it returns.
+    std::optional<Best> run();
+
+    [[nodiscard]] Agreement agreement() const;
+    [[nodiscard]] std::optional<double> difference() const;  ///< of the solvers, relative; absent unless both are usable
+    [[nodiscard]] std::vector<SolverRun> runs() const;       ///< the best of each solver first
+    [[nodiscard]] std::vector<const Best*> ranked() const;   ///< the usable ones, the best first
+    /// A solver asked for came to the objective of `best`.
+    [[nodiscard]] bool a_solver_came_to(const Best& best) const;
+    [[nodiscard]] bool is_relaxed(const Best* best) const { return best == &relaxed_; }
+    /// The segment point, polished: admissible without a solver.
+    [[nodiscard]] std::optional<Best> segment() const;
+
+private:
+    [[nodiscard]] std::optional<Eigen::VectorXd> start(int k) const;
+    [[nodiscard]] std::optional<Eigen::VectorXd> aside_of(const Eigen::VectorXd& gamma, int k) const;
+    void search_with_nlopt();
+    void search_with_ipopt();
+    void ask(const Best& better, Best& worse, const char* solver);
+    void settle();
+    bool attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best);
+    [[nodiscard]] SolverOutcome call(const std::string& solver, const Eigen::VectorXd& x);
+    [[nodiscard]] Best found(const Polished& polished, const char* method) const;
+    void set_bound(double objective, double bound, Optimality& result) const;
+    [[nodiscard]] double difference(const Best& a, const Best& b) const;
+    [[nodiscard]] bool not_worse(const Best& a, const Best& b) const;
+
+    const OrbitSolverOptions& options_;
+    IpoptSolver& ipopt_solver_;
+    const PatternProblem& problem_;
+    const Goal& goal_;
+    OrbitProgram program_;
+    std::optional<LevelPoints> level_;
+    bool with_ipopt_;
+    bool with_nlopt_;
+    int starts_;    // of each solver
+    int next_ = 1;  // number of the next start
+    Best ipopt_;
+    Best nlopt_;
+    Best relaxed_;  // a better orbit that bounding came upon
+    std::vector<SolverRun> others_;
+};
+
+}  // namespace nsma
