@@ -162,25 +162,40 @@ TEST_F(SweepProcess, AnyNumberOfRanksGivesTheSameTables) {
     }
 }
 
+/// Processes started by `parent`, the newest last.
+std::vector<pid_t> children_of(pid_t parent) {
+    std::vector<pid_t> children;
+    std::ifstream list("/proc/" + std::to_string(parent) + "/task/" + std::to_string(parent) + "/children");
+    for (pid_t child = 0; list >> child;) children.push_back(child);
+    return children;
+}
+
 TEST_F(SweepProcess, ALostRankLosesNothingThatWasStored) {
     const fs::path alone = folder_ / "alone";
-    const fs::path out = folder_ / "out";
     const int code = run(sweep(scene_, alone));
-    const pid_t child = start(ranks(2, sweep(scene_, out)));
-    // A minute at most for the store to be there; then every process at once is killed.
-    for (int i = 0; i < 1200 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite"); ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    for (const bool all : {true, false}) {
+        const fs::path out = folder_ / (all ? "all" : "one");
+        const pid_t child = start(ranks(2, sweep(scene_, out)));
+        // A minute at most for the store to be there; then every process at once, or the last rank alone, is killed.
+        for (int i = 0; i < 1200 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite"); ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+        const auto started = children_of(child);
+        if (all || started.empty()) {
+            kill(-child, SIGKILL);
+        } else {
+            kill(started.back(), SIGKILL);
+        }
+        if (finish(child) == 127) GTEST_SKIP() << "no mpirun here";
+        // The ranks see that mpirun is gone and end.
+        int resumed = 2;
+        for (int i = 0; i < 100 && resumed == 2; ++i) {
+            resumed = run(sweep(scene_, out, true));
+            if (resumed == 2) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        }
+        EXPECT_EQ(resumed, code) << output();
+        expect_same(out, alone);
     }
-    kill(-child, SIGKILL);
-    if (finish(child) == 127) GTEST_SKIP() << "no mpirun here";
-    // The ranks see that mpirun is gone and end.
-    int resumed = 2;
-    for (int i = 0; i < 100 && resumed == 2; ++i) {
-        resumed = run(sweep(scene_, out, true));
-        if (resumed == 2) std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    }
-    EXPECT_EQ(resumed, code) << output();
-    expect_same(out, alone);
 }
 
 TEST_F(SweepProcess, AFullDiskLeavesAStoreToGoOnWith) {
