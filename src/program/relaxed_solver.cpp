@@ -12,32 +12,54 @@
 namespace nsma {
 namespace {
 
-// CLP works to 1e-9; rows are scaled to order one.
+// CLP works to 1e-9, rows are scaled to order one: a vertex may be this far from its rows.
 constexpr double activity = 1e-7;
 // The rays and nonzero points sought lie in a unit box over small integer rows.
 constexpr double direction_tolerance = 1e-7;
 constexpr int climb_limit = 50;
 
-LinearProgram linear_part(const Program& program, double box = no_bound) {
-    const auto n = program.variables();
-    const auto inequalities = program.inequalities.rows();
-    const auto equalities = program.equalities.rows();
-    LinearProgram result;
-    result.rows.resize(inequalities + equalities, n);
-    result.rows.topRows(inequalities) = Eigen::MatrixXd(program.inequalities);
-    result.rows.bottomRows(equalities) = Eigen::MatrixXd(program.equalities);
-    result.row_lower = Eigen::VectorXd::Constant(inequalities + equalities, -no_bound);
-    result.row_upper.resize(inequalities + equalities);
-    result.row_upper << program.inequality_values, program.equality_values;
-    result.row_lower.tail(equalities) = program.equality_values;
-    result.lower = program.lower.cwiseMax(-box);
-    result.upper = program.upper.cwiseMin(box);
-    return result;
-}
+// The linear rows of a program without bounds on its unknowns, over x = plus - minus with both
+// >= 0: CLP has called points optimal that were not, or cycled, where every unknown was free.
+class LinearPart {
+public:
+    /// `box`: bound of plus and minus.
+    explicit LinearPart(const Program& program, double box = no_bound) : solver_(split(program, box)) {}
 
-// Moves a point onto the rows that are nearly active there, so that only rounding is left.
-Eigen::VectorXd sharpened(const Program& program, Eigen::VectorXd x) {
-    const double tolerance = activity * (1.0 + x.cwiseAbs().maxCoeff());
+    LinearSolution minimise(const Eigen::VectorXd& cost) {
+        const auto n = cost.size();
+        Eigen::VectorXd both(2 * n);
+        both << cost, -cost;
+        LinearSolution solution = solver_.minimise(both);
+        if (solution.status == LinearStatus::optimal) {
+            solution.x = Eigen::VectorXd(solution.x.head(n) - solution.x.tail(n));
+        }
+        return solution;
+    }
+
+private:
+    static LinearProgram split(const Program& program, double box) {
+        const auto n = program.variables();
+        const auto inequalities = program.inequalities.rows();
+        const auto equalities = program.equalities.rows();
+        Eigen::MatrixXd rows(inequalities + equalities, n);
+        rows << Eigen::MatrixXd(program.inequalities), Eigen::MatrixXd(program.equalities);
+        LinearProgram result;
+        result.rows.resize(rows.rows(), 2 * n);
+        result.rows << rows, -rows;
+        result.row_upper.resize(rows.rows());
+        result.row_upper << program.inequality_values, program.equality_values;
+        result.row_lower = Eigen::VectorXd::Constant(rows.rows(), -no_bound);
+        result.row_lower.tail(equalities) = program.equality_values;
+        result.lower = Eigen::VectorXd::Zero(2 * n);
+        result.upper = Eigen::VectorXd::Constant(2 * n, box);
+        return result;
+    }
+
+    LinearSolver solver_;
+};
+
+// Moves a point onto the rows within `tolerance`, so that only rounding is left.
+Eigen::VectorXd onto_rows(const Program& program, Eigen::VectorXd x, double tolerance) {
     const Eigen::VectorXd slack = program.inequality_values - program.inequalities * x;
     std::vector<Eigen::Index> active;
     for (Eigen::Index i = 0; i < slack.size(); ++i) {
@@ -61,13 +83,24 @@ Eigen::VectorXd sharpened(const Program& program, Eigen::VectorXd x) {
     return x;
 }
 
+// The same with the widest tolerance whose rows do meet in a point of the set: rows a small
+// relaxation apart are not one vertex.
+Eigen::VectorXd sharpened(const Program& program, const Eigen::VectorXd& x) {
+    const double size = 1.0 + x.cwiseAbs().maxCoeff();
+    for (const double tolerance : {activity, 1e-2 * activity}) {
+        Eigen::VectorXd moved = onto_rows(program, x, tolerance * size);
+        if (program.violation(moved) <= PolishOptions{}.feasibility * size) return moved;
+    }
+    return x;
+}
+
 // A nonzero direction within the homogeneous rows, in beta; empty when there is none.
 Eigen::VectorXd recession(const RelaxedProgram& form) {
     Program cone = form.program;
     cone.inequality_values.setZero();
     cone.equality_values.setZero();
     const auto n = cone.variables();
-    LinearSolver solver(linear_part(cone, 1.0));
+    LinearPart solver(cone, 1.0);
     for (Eigen::Index j = 0; j < n; ++j) {
         for (const double side : {-1.0, 1.0}) {
             Eigen::VectorXd cost = Eigen::VectorXd::Zero(n);
@@ -84,7 +117,7 @@ Eigen::VectorXd recession(const RelaxedProgram& form) {
 // Vertices reached by climbing the energy along linear programs from fixed directions.
 class Climber {
 public:
-    Climber(const RelaxedProgram& form) : form_(form), solver_(linear_part(form.program)) {}
+    explicit Climber(const RelaxedProgram& form) : form_(form), solver_(form.program) {}
 
     void climb(Eigen::VectorXd direction) {
         double best = -1;
@@ -117,7 +150,7 @@ private:
     }
 
     const RelaxedProgram& form_;
-    LinearSolver solver_;
+    LinearPart solver_;
     std::vector<Eigen::VectorXd> found_;
 };
 
@@ -158,7 +191,7 @@ Eigen::VectorXd crossing(const Eigen::VectorXd& from, const Eigen::VectorXd& to)
 RelaxedInterval relaxed_interval(const RelaxedSet& set, const Shift& shift, bool greatest) {
     RelaxedInterval result;
     const RelaxedProgram form = relaxed_program(set, Objective::min_energy, set.energy_factor, shift);
-    LinearSolver solver(linear_part(form.program));
+    LinearPart solver(form.program);
     const LinearSolution feasible = solver.minimise(Eigen::VectorXd::Zero(form.program.variables()));
     if (feasible.status == LinearStatus::infeasible) {
         result.empty = true;
@@ -242,6 +275,11 @@ RelaxedOptimum relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& int
     nearest.hessian.makeCompressed();
     for (const auto& beta : request.near) {
         const Eigen::VectorXd wanted = beta / form.scale;
+        nearest.gradient.setZero();
+        if (nearest.violation(wanted) <= PolishOptions{}.activity) {
+            attempt(wanted);
+            continue;
+        }
         nearest.gradient = -2.0 * wanted;
         const Polished closest = polish(nearest, base);
         if (closest.feasible) attempt(closest.x);

@@ -37,28 +37,47 @@ const char* words_of(const std::string& relaxed) {
     return found == words.end() ? "?" : found->second;
 }
 
-// What relaxing one row saves, relative; zero where there is no number.
+// What relaxing one row saves, relative; zero where there is no number and for a row that holds
+// only an orbit tied with this one.
 double saving(const OptimumRecord& optimum, const Price& price) {
-    return price.slope.right ? std::max(-*price.slope.right / optimum.value, 0.0) : 0.0;
+    return price.active && price.slope.right ? std::max(-*price.slope.right / optimum.value, 0.0) : 0.0;
 }
 
 bool is_row(const Price& price) {
     return price.parameter == Parameter::cond1_row || price.parameter == Parameter::cond3_row;
 }
 
-// How much COND1 and COND3 both have to say: rows that save at least a tenth of what the most
-// telling one saves, those in flight counted first.
+// How much there is to see under x_1(t): rows that save at least a tenth of what the most telling
+// one saves, those in flight counted thrice.
 int binding_rows(const OptimumRecord& optimum) {
     double highest = 0;
     for (const auto& price : optimum.prices) {
         if (is_row(price)) highest = std::max(highest, saving(optimum, price));
     }
-    int flight = 0, contact = 0;
+    int rows = 0;
     for (const auto& price : optimum.prices) {
         if (!is_row(price) || highest <= 1e-9 || saving(optimum, price) < 0.1 * highest) continue;
-        (price.parameter == Parameter::cond1_row ? flight : contact) += 1;
+        rows += price.parameter == Parameter::cond1_row ? 3 : 1;
     }
-    return 3 * flight + (flight > 0 ? 1 : 0) * contact + std::min(contact, 2);
+    return rows;
+}
+
+std::optional<double> right_slope(const std::vector<Price>& prices, Parameter parameter) {
+    for (const auto& price : prices) {
+        if (price.parameter == parameter) return price.slope.right;
+    }
+    return std::nullopt;
+}
+
+std::string number_or_gap(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : "NaN"; }
+
+// A step of 1, 2 or 5 times a power of ten that divides the range into three to six.
+double tic_step(double range) {
+    const double power = std::pow(10.0, std::floor(std::log10(range / 3)));
+    for (const double factor : {5.0, 2.0}) {
+        if (factor * power <= range / 3) return factor * power;
+    }
+    return power;
 }
 
 }  // namespace
@@ -77,38 +96,42 @@ Chart binding_chart(const Scene& scene, const OptimumRecord& optimum) {
     for (Eigen::Index n = 0; n < tip.size(); ++n) chart.data += fmt::format("{} {}\n", static_cast<double>(n) / cells, tip[n]);
     double highest = 0;
     const auto bars = [&](const char* index, Parameter parameter) {
+        bool any = false;
         chart.data += fmt::format("\n\n# {}\nNaN 0\n", index);
         for (const auto& price : optimum.prices) {
             if (price.parameter != parameter) continue;
             const double height = saving(optimum, price);
             if (height <= 1e-9) continue;
             highest = std::max(highest, height);
+            any = true;
             for (const int step : price.steps) {
                 const double middle = parameter == Parameter::cond3_row ? 0.5 : 0.0;
                 chart.data += fmt::format("{} {}\n", (step + middle) / cells, height);
             }
         }
+        return any;
     };
-    bars("wall", Parameter::cond1_row);
-    bars("push", Parameter::cond3_row);
+    const bool wall_decides = bars("wall", Parameter::cond1_row);
+    const bool push_decides = bars("push", Parameter::cond3_row);
     chart.data += "\n\n# active\nNaN 0\n";
     for (const auto& price : optimum.prices) {
         if (price.parameter != Parameter::cond1_row || !price.active) continue;
         for (const int step : price.steps) chart.data += fmt::format("{} {}\n", step / cells, tip[step]);
     }
-    std::string contact;
-    for (const auto& price : optimum.prices) {
-        if (price.parameter != Parameter::gap && price.parameter != Parameter::energy) continue;
-        if (!price.slope.right) continue;
-        contact += fmt::format("{}{} {:+.3g}", contact.empty() ? "elasticity: " : ", ", name(price.parameter),
-                               elasticity(*price.slope.right, price.parameter, optimum.value, scene.bar.gap_sign(),
-                                          optimum.level.value_or(energy_ratio(optimum.orbit))));
+    std::string elasticities;
+    for (const auto& [parameter, words] : {std::pair{Parameter::gap, "gap"}, std::pair{Parameter::contact, "place of contact"},
+                                           std::pair{Parameter::energy, "energy"}}) {
+        const auto slope = right_slope(optimum.prices, parameter);
+        if (!slope) continue;
+        const double relative = elasticity(*slope, parameter, optimum.value, scene.bar.gap_sign(),
+                                           optimum.level.value_or(energy_ratio(optimum.orbit)));
+        elasticities += fmt::format("{}{} {:+.3g}", elasticities.empty() ? "elasticity of the objective: " : ", ", words, relative);
     }
     const double lowest = tip.minCoeff();
     const double head = 0.14 * std::max(wall - lowest, 1e-9);
     const std::string title =
         fmt::format("Where the wall decides: {}, {}{}", name(optimum.objective), pattern_text(pattern),
-                    optimum.level ? fmt::format(", E/E_g = {:.3g}", *optimum.level) : "");
+                    optimum.level ? fmt::format(", E = {:.3g} E_g", *optimum.level) : "");
     chart.commands = fmt::format(
         R"(set multiplot
 {axes}set lmargin screen 0.12
@@ -116,7 +139,7 @@ set rmargin screen 0.97
 set xrange [0:{period}]
 set tmargin screen 0.92
 set bmargin screen 0.55
-set title {title} noenhanced
+set title {title}
 set format x ''
 set ylabel 'x_1/|d|' offset 0.5,0
 set yrange [{lowest}:{top}]
@@ -134,14 +157,15 @@ set tmargin screen 0.50
 set bmargin screen 0.24
 set format x '%g'
 set xlabel 'time t/τ, τ = L/c'
-set ylabel "saved by relaxing\n% per %" offset 0.5,0
+set ylabel "saved [%]" offset 0.5,0
 set yrange [0:{highest}]
+set ytics {tic}
 set boxwidth {width}
-set label 3 {contact} at graph 0.01, graph 1.02 left noenhanced textcolor rgb '#333333'
+set label 3 {elasticities} at graph 0.01, graph 1.08 left noenhanced textcolor rgb '#333333'
 set key at screen 0.545, screen 0.11 center top vertical maxrows 3 Left reverse samplen 3
-plot 'binding.dat' index 1 using 1:2 with boxes lc rgb '#d55e00' fillstyle solid 0.8 border lc rgb '#d55e00' title 'COND1 rows: penetration, % of the objective per % of |d|', \
-     'binding.dat' index 2 using 1:2 with boxes lc rgb '#000000' fillstyle pattern 4 border lc rgb '#000000' title 'COND3 bounds: tension, % of the objective per % of YS|d|/L', \
-     NaN with points pt 7 ps 0.9*mark lc rgb '#d55e00' title 'above: rows at equality'
+plot 'binding.dat' index 1 using 1:2 with boxes lc rgb '#d55e00' fillstyle solid 0.8 border lc rgb '#d55e00' title '{flight_words}', \
+     'binding.dat' index 2 using 1:2 with boxes lc rgb '#000000' fillstyle pattern 4 border lc rgb '#000000' title '{contact_words}', \
+     NaN with points pt 7 ps 0.9*mark lc rgb '#d55e00' title 'above: steps of the flight at the wall'
 unset multiplot
 )",
         fmt::arg("axes", axes), fmt::arg("period", period), fmt::arg("title", gnuplot_text(title)),
@@ -149,82 +173,107 @@ unset multiplot
         fmt::arg("label", wall + 0.5 * head), fmt::arg("free", pattern.free_steps / cells),
         fmt::arg("middle", (pattern.free_steps + 0.5 * pattern.contact_steps) / cells),
         fmt::arg("highest", highest > 0 ? 1.15 * highest : 1.0), fmt::arg("width", 0.7 / cells),
-        fmt::arg("contact", gnuplot_text(contact)));
+        fmt::arg("elasticities", gnuplot_text(elasticities)),
+        fmt::arg("flight_words", wall_decides ? "COND1: saved per penetration of 1 % of |d| at this step"
+                                              : "COND1: no step of the flight has a price"),
+        fmt::arg("contact_words", push_decides ? "COND3: saved per tension of 1 % of YS|d|/L at this step"
+                                               : "COND3: no step of contact has a price"),
+        fmt::arg("tic", tic_step(highest > 0 ? highest : 1.0)));
     return chart;
 }
 
 Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records, const IntervalRecord& interval,
                        const OptimumRecord* optimum) {
     Chart chart{"relaxation",
-                fmt::format("# {}: amount (of |d|; of Y S |d|/L), E_min/E_g, its tangent at zero, objective over its "
-                            "value at zero, its tangent\n",
+                fmt::format("# {}: amount (of |d|; of Y S |d|/L), E_min/E_g, E_max/E_g, objective over its value at zero, "
+                            "then the tangents of these at zero\n",
                             scene.title),
                 ""};
-    std::string energies, objectives;
-    std::size_t style = 0;
+    std::array<std::string, 3> panels;
     double reach = 0;
-    const auto slope_of = [](const std::vector<Price>& prices, Parameter parameter) -> std::optional<double> {
-        for (const auto& price : prices) {
-            if (price.parameter == parameter) return price.slope.right;
-        }
-        return std::nullopt;
-    };
-    const auto text = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : "NaN"; };
-    for (const auto& [relaxed, parameter] :
-         {std::pair{"penetration", Parameter::penetration}, std::pair{"band", Parameter::band},
-          std::pair{"adhesion", Parameter::adhesion}}) {
-        const auto energy_slope = slope_of(interval.least_prices, parameter);
-        const auto objective_slope = optimum != nullptr ? slope_of(optimum->prices, parameter) : std::nullopt;
-        chart.data += fmt::format("\n\n# {}\n", relaxed);
+    const std::vector<Price> none;
+    const auto& objective_prices = optimum != nullptr ? optimum->prices : none;
+    // Pairs below, so that the single conditions and their tangents are seen.
+    constexpr std::array relaxed_names{"penetration+band", "penetration+adhesion", "band+adhesion",
+                                       "penetration",      "band",                 "adhesion"};
+    for (std::size_t i = 0; i < relaxed_names.size(); ++i) {
+        const std::string relaxed = relaxed_names.at(i);
+        const bool single = i >= 3;
+        const std::size_t style = (i + 3) % 6;
+        const Parameter parameter = i == 3 ? Parameter::penetration : i == 4 ? Parameter::band : Parameter::adhesion;
+        const auto tangent = [&](const std::vector<Price>& prices, double value, double unit, double amount) {
+            const auto slope = single ? right_slope(prices, parameter) : std::nullopt;
+            return number_or_gap(slope ? std::optional((value + *slope * amount) / unit) : std::nullopt);
+        };
+        chart.data += fmt::format("\n\n# {}\nNaN NaN NaN NaN NaN NaN NaN\n", relaxed);
         for (const auto& record : records.curves) {
             if (!(record.pattern == interval.pattern) || record.relaxed != relaxed || !record.least) continue;
             reach = std::max(reach, record.amount);
-            std::optional<double> energy_line, objective, objective_line;
-            if (energy_slope) energy_line = interval.least + *energy_slope * record.amount;
+            std::optional<double> objective;
             if (optimum != nullptr && record.objective) objective = *record.objective / optimum->value;
-            if (objective_slope) objective_line = 1.0 + *objective_slope / optimum->value * record.amount;
-            chart.data += fmt::format("{} {} {} {} {}\n", record.amount, *record.least, text(energy_line),
-                                      text(objective), text(objective_line));
+            const double value = optimum != nullptr ? optimum->value : 1.0;
+            chart.data += fmt::format("{} {} {} {} {} {} {}\n", record.amount, *record.least, number_or_gap(record.greatest),
+                                      number_or_gap(objective),
+                                      tangent(interval.least_prices, interval.least, 1.0, record.amount),
+                                      tangent(interval.greatest_prices, interval.greatest.value_or(0), 1.0, record.amount),
+                                      tangent(objective_prices, value, value, record.amount));
         }
-        const auto curve = [&](int value, int line) {
-            return fmt::format(
-                ", \\\n     'relaxation.dat' index {0} using 1:{1} with linespoints lw 2 pt {2} ps 0.9*mark {3} notitle"
-                ", \\\n     'relaxation.dat' index {0} using 1:{4} with lines lw 1.2 dt 3 lc rgb '#333333' notitle",
-                style, value, marks.at(style), lines.at(style), line);
-        };
-        energies += curve(2, 3);
-        objectives += curve(4, 5) + fmt::format(", \\\n     NaN with linespoints lw 2 pt {} ps 0.9*mark {} title '{}'",
-                                                marks.at(style), lines.at(style), words_of(relaxed));
-        ++style;
+        for (std::size_t panel = 0; panel < 3; ++panel) {
+            panels.at(panel) += fmt::format(
+                "{}'relaxation.dat' index {} using 1:{} with linespoints lw 2 pt {} ps {}*mark {}", i == 0 ? "" : ", \\\n     ",
+                i, 2 + panel, marks.at(style), single ? 0.9 : 1.5, lines.at(style));
+            if (single) {
+                panels.at(panel) += fmt::format(
+                    ", \\\n     'relaxation.dat' index {} using 1:{} with lines lw 1.5 dt 3 lc rgb '#333333'", i, 5 + panel);
+            }
+        }
     }
-    const std::string level = optimum != nullptr && optimum->level ? fmt::format(" at E/E_g = {:.3g}", *optimum->level) : "";
+    std::string legend = "NaN with lines lw 1.5 dt 3 lc rgb '#333333' title 'tangents at zero, from the multipliers'";
+    for (const auto& [relaxed, style] : {std::pair{"penetration", 0U}, std::pair{"band", 1U}, std::pair{"adhesion", 2U},
+                                         std::pair{"penetration+band", 3U}, std::pair{"penetration+adhesion", 4U},
+                                         std::pair{"band+adhesion", 5U}}) {
+        legend += fmt::format(", \\\n     NaN with linespoints lw 2 pt {} ps {}*mark {} title '{}'", marks.at(style),
+                              style < 3 ? 0.9 : 1.5, lines.at(style), words_of(relaxed));
+    }
+    const std::string level = optimum != nullptr && optimum->level ? fmt::format(" at E = {:.3g} E_g", *optimum->level) : "";
     chart.commands = fmt::format(
         R"(set multiplot
-{axes}set xlabel 'amount allowed'
+{axes}unset key
+set label 1 {title} at screen 0.5, screen 0.965 center
 set xrange [0:{reach}]
 set yrange [0:*]
-set tmargin screen 0.86
-set bmargin screen 0.30
-set lmargin screen 0.10
+set lmargin screen 0.09
 set rmargin screen 0.48
-set label 1 {title} at screen 0.5, screen 0.95 center noenhanced
+set tmargin screen 0.88
+set bmargin screen 0.58
 set title 'least energy E_{{min}}/E_g'
-unset key
-plot NaN notitle{energies}
+plot {least}
 unset label 1
 set lmargin screen 0.59
-set rmargin screen 0.97
-set title {objective} noenhanced
-set key at screen 0.52, screen 0.155 center top vertical maxrows 2 Left reverse samplen 4 width 2
-plot NaN with lines lw 1.2 dt 3 lc rgb '#333333' title 'tangent, from the multipliers'{objectives}
+set rmargin screen 0.98
+set title 'greatest energy E_{{max}}/E_g'
+plot {greatest}
+set lmargin screen 0.09
+set rmargin screen 0.48
+set tmargin screen 0.43
+set bmargin screen 0.13
+set xlabel 'amount allowed: length/|d|, tension/(YS|d|/L)'
+set title {objective}
+plot {objectives}
+unset title
+unset xlabel
+set border 0
+unset xtics
+unset ytics
+set key at screen 0.58, screen 0.40 left top vertical maxrows 7 Left reverse samplen 4
+plot [0:1] [0:1] {legend}
 unset multiplot
 )",
-        fmt::arg("axes", axes),
-        fmt::arg("title", gnuplot_text("Relaxing one condition: " + pattern_text(interval.pattern) +
-                                       "; lengths in |d|, tension in YS|d|/L")),
-        fmt::arg("objective", gnuplot_text(fmt::format("{}, relative{}", name(scene.objective), level))),
-        fmt::arg("reach", reach > 0 ? 1.02 * reach : 1.0), fmt::arg("energies", energies),
-        fmt::arg("objectives", objectives));
+        fmt::arg("axes", axes), fmt::arg("reach", reach > 0 ? 1.02 * reach : 1.0),
+        fmt::arg("title", gnuplot_text("Allowing penetration, a band of contact, tension: " + pattern_text(interval.pattern))),
+        fmt::arg("objective", gnuplot_text(fmt::format("{}{}, relative", name(scene.objective), level))),
+        fmt::arg("least", panels[0]), fmt::arg("greatest", panels[1]), fmt::arg("objectives", panels[2]),
+        fmt::arg("legend", legend));
     return chart;
 }
 
@@ -252,7 +301,8 @@ set xlabel 'amount allowed (of |d|; adhesion of YS|d|/L)'
 set ylabel 'admissible patterns'
 set xrange [0:{reach}]
 set yrange [0:{highest}]
-set key outside bottom center horizontal maxrows 3 Left reverse samplen 4
+set bmargin screen 0.26
+set key at screen 0.53, screen 0.12 center top vertical maxrows 2 Left reverse samplen 4
 plot {curves}
 )",
         fmt::arg("axes", axes), fmt::arg("title", gnuplot_text(scene.title + ": admissible patterns when conditions are relaxed")),
@@ -287,7 +337,8 @@ set xtics ({ticks}) scale 0
 set xrange [-1:29]
 set yrange [0:{highest}]
 set boxwidth 0.9
-set key outside bottom center horizontal samplen 2
+set bmargin screen 0.20
+set key at screen 0.53, screen 0.06 center horizontal samplen 2 Left reverse
 plot 'funnel.dat' index 0 using 1:2 with boxes lc rgb '#bbbbbb' fillstyle solid 0.4 border lc rgb '#777777' title 'kernel', \
      'funnel.dat' index 1 using 1:2 with boxes lc rgb '#222222' fillstyle solid 0.9 border lc rgb '#222222' title 'after COND1', \
      'funnel.dat' index 2 using 1:2 with boxes lc rgb '#000000' fillstyle pattern 4 border lc rgb '#000000' title 'after COND2', \

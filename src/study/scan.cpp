@@ -53,6 +53,7 @@ PatternRecord sieved_record(const Pattern& pattern, int gap_sign, const Sieved& 
     if (!linear) return record;
     PatternOptions options;
     options.admissible.greatest = false;
+    options.admissible.closed_form = false;  // by another way than the sieve
     options.prove = false;
     const PatternProblem problem = pattern_problem(pattern, gap_sign, options);
     // Least norm over integers of at most 2N: rounding only.

@@ -139,7 +139,7 @@ private:
             return;
         }
         if (record.euler_defect) summary_.worst_euler = std::max(summary_.worst_euler, *record.euler_defect);
-        summary_.worst_kkt = std::max(summary_.worst_kkt, record.kkt_residual);
+        if (record.kkt_residual) summary_.worst_kkt = std::max(summary_.worst_kkt, *record.kkt_residual);
     }
 
     void curves(const RelaxedSet& set, bool admissible, std::optional<double> level) {

@@ -89,7 +89,8 @@ OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objecti
         price.parameter = row.condition == ConditionRow::Condition::cond1 ? Parameter::cond1_row : Parameter::cond3_row;
         price.steps = row.steps;
         price.active = std::find(active.begin(), active.end(), static_cast<int>(i)) != active.end();
-        if (price.active || !record.refusal.empty()) {
+        // A row inactive here may hold the orbit tied with this one.
+        if (price.active || record.tied || !record.refusal.empty()) {
             price.slope = optimum.slope(direction_of(set, price.parameter, static_cast<int>(i)));
         } else {
             price.slope.kind = Slope::Kind::two_sided;

@@ -342,6 +342,27 @@ TEST_F(Program, BadFlagsAreOneLine) {
     expect_refused(with({"--gap", "nan"}), "--gap");
     expect_refused(with({"--gap", "1e-300"}));  // its square, the energy unit, vanishes
     expect_refused({"sweep", scene_}, "--out");
+    const std::string out = (folder_ / "sensitivity").string();
+    const auto study = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"sensitivity", scene_, "--out", out};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    expect_refused({"sensitivity"}, "SCENE");
+    expect_refused({"sensitivity", scene_}, "--out");
+    expect_refused({"sensitivity", (folder_ / "none.toml").string(), "--out", out}, "none.toml");
+    expect_refused({"sensitivity", scene_, "--out", scene_}, "expected a folder");
+    expect_refused(study({"--free", "16"}), "--contact");
+    expect_refused(study({"--free", "0", "--contact", "4"}), "--free");
+    expect_refused(study({"--free", "16", "--contact", "4", "--energy", "-1"}), "--energy");
+    expect_refused(study({"--free", "16", "--contact", "4", "--energy", "nan"}), "--energy");
+    expect_refused(study({"--energy", "12"}), "--free");
+    expect_refused(study({"--objective", "beauty"}), "--objective");
+    expect_refused(study({"--free", "16", "--contact", "4", "--energy", "12", "--objective", "min-energy"}), "--energy");
+    expect_refused(study({"--solver", "gurobi"}), "--solver");
+    const std::string closed = write("closed.toml", scene_text("0.0"));
+    expect_refused({"sensitivity", closed, "--free", "16", "--contact", "4", "--out", out}, "--energy");
+    EXPECT_FALSE(fs::exists(out));
     expect_refused({"plot"}, "DIR");
     expect_refused({"plot", (folder_ / "nothing").string()}, "nothing");
     expect_refused({"scan", (folder_ / "none.toml").string()}, "none.toml");
@@ -519,6 +540,44 @@ TEST_F(Program, AccuracyStudyRunsQuicklyAndRefusesWhatItCannotStudy) {
     // Results of one scene only.
     const std::string other = write("other.toml", scene_text("1.0", "7"));
     EXPECT_EQ(run({"accuracy", other, "--out", out, "--quick", "--quiet"}).exit_code, 2);
+}
+
+TEST_F(Program, SensitivityStudyOfOnePatternAndOfTheScene) {
+    const std::string one = (folder_ / "one").string();
+    const std::vector<std::string> pattern{"--free", "16", "--contact", "4", "--energy", "12"};
+    std::vector<std::string> words{"sensitivity", scene_, "--out", one, "--quiet"};
+    words.insert(words.end(), pattern.begin(), pattern.end());
+    const Result done = run(words);
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_TRUE(done.err.empty()) << done.err;
+    EXPECT_NE(done.out.find("optima 1:"), std::string::npos) << done.out;
+    EXPECT_TRUE(fs::exists(fs::path(one) / "charts/binding.png"));
+    // The energy's price and the gap's: Euler's identity from the printed numbers.
+    double gap = 0, energy = 0;
+    for (const auto& line : lines_of(contents(fs::path(one) / "prices.csv"))) {
+        std::vector<std::string> fields;
+        std::istringstream stream(line);
+        for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+        if (fields.size() > 16 && fields[7] == "gap") gap = std::stod(fields[16]);
+        if (fields.size() > 16 && fields[7] == "energy") energy = std::stod(fields[16]);
+    }
+    EXPECT_NEAR(gap + 2 * energy, 2.0, 1e-8);
+
+    const std::string whole = (folder_ / "whole").string();
+    const Result all = run({"sensitivity", scene_, "--out", whole, "--quiet"});
+    EXPECT_EQ(all.exit_code, 0) << all.err;
+    for (const char* file : {"optima.csv", "prices.csv", "orbit-derivatives.csv", "intervals.csv", "relaxations.csv",
+                             "ablation.csv", "funnel.csv", "sensitivity.txt", "charts/funnel.png", "charts/counts.svg"}) {
+        EXPECT_TRUE(fs::exists(fs::path(whole) / file)) << file;
+    }
+    const std::string before = contents(fs::path(whole) / "prices.csv");
+    EXPECT_EQ(run({"sensitivity", scene_, "--out", whole, "--quiet"}).exit_code, 0);
+    EXPECT_EQ(contents(fs::path(whole) / "prices.csv"), before);
+
+    // Results of one scene only; a pattern that nothing meets has no optimum.
+    const std::string other = write("other.toml", scene_text("1.0", "7"));
+    EXPECT_EQ(run({"sensitivity", other, "--out", whole, "--quiet"}).exit_code, 2);
+    EXPECT_EQ(run({"sensitivity", scene_, "--free", "5", "--contact", "5", "--out", (folder_ / "none").string(), "--quiet"}).exit_code, 3);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -29,6 +30,12 @@ std::string contents(const fs::path& file) {
     return text.str();
 }
 
+/// What the machine may refuse the started program.
+struct Limits {
+    rlim_t file_size = RLIM_INFINITY;  ///< bytes; a write beyond fails, as on a full disk
+    bool no_rights = false;            ///< not root, for whom every folder is writable
+};
+
 class SweepProcess : public testing::Test {
 protected:
     void SetUp() override {
@@ -47,7 +54,7 @@ protected:
         return (folder_ / name).string();
     }
 
-    pid_t start(std::vector<std::string> words) {
+    pid_t start(std::vector<std::string> words, Limits limits = {}) {
         std::vector<char*> pointers;
         for (auto& word : words) pointers.push_back(word.data());
         pointers.push_back(nullptr);
@@ -58,6 +65,12 @@ protected:
             const int file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
             dup2(file, STDOUT_FILENO);
             dup2(file, STDERR_FILENO);
+            if (limits.file_size != RLIM_INFINITY) {
+                signal(SIGXFSZ, SIG_IGN);
+                const rlimit limit{limits.file_size, limits.file_size};
+                setrlimit(RLIMIT_FSIZE, &limit);
+            }
+            if (limits.no_rights && getuid() == 0 && setuid(nobody) != 0) _exit(126);
             execvp(pointers[0], pointers.data());
             _exit(127);
         }
@@ -69,7 +82,7 @@ protected:
         EXPECT_EQ(waitpid(child, &status, 0), child);
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
-    int run(const std::vector<std::string>& words) { return finish(start(words)); }
+    int run(const std::vector<std::string>& words, Limits limits = {}) { return finish(start(words, limits)); }
     std::string output() { return contents(folder_ / ".out"); }
 
     static std::vector<std::string> sweep(const std::string& scene, const fs::path& out, bool resume = false) {
@@ -101,6 +114,7 @@ protected:
         EXPECT_EQ(first, second);
     }
 
+    static constexpr uid_t nobody = 65534;
     fs::path folder_;
     std::string scene_;
 };
@@ -148,25 +162,74 @@ TEST_F(SweepProcess, AnyNumberOfRanksGivesTheSameTables) {
     }
 }
 
+/// Processes started by `parent`, the newest last.
+std::vector<pid_t> children_of(pid_t parent) {
+    std::vector<pid_t> children;
+    std::ifstream list("/proc/" + std::to_string(parent) + "/task/" + std::to_string(parent) + "/children");
+    for (pid_t child = 0; list >> child;) children.push_back(child);
+    return children;
+}
+
 TEST_F(SweepProcess, ALostRankLosesNothingThatWasStored) {
     const fs::path alone = folder_ / "alone";
-    const fs::path out = folder_ / "out";
     const int code = run(sweep(scene_, alone));
-    const pid_t child = start(ranks(2, sweep(scene_, out)));
-    // A minute at most for the store to be there; then every process at once is killed.
-    for (int i = 0; i < 1200 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite"); ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    for (const bool all : {true, false}) {
+        const fs::path out = folder_ / (all ? "all" : "one");
+        const pid_t child = start(ranks(2, sweep(scene_, out)));
+        // A minute at most for the store to be there; then every process at once, or the last rank alone, is killed.
+        for (int i = 0; i < 1200 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite"); ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+        const auto started = children_of(child);
+        if (all || started.empty()) {
+            kill(-child, SIGKILL);
+        } else {
+            kill(started.back(), SIGKILL);
+        }
+        if (finish(child) == 127) GTEST_SKIP() << "no mpirun here";
+        // The ranks see that mpirun is gone and end.
+        int resumed = 2;
+        for (int i = 0; i < 100 && resumed == 2; ++i) {
+            resumed = run(sweep(scene_, out, true));
+            if (resumed == 2) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        }
+        EXPECT_EQ(resumed, code) << output();
+        expect_same(out, alone);
     }
-    kill(-child, SIGKILL);
-    if (finish(child) == 127) GTEST_SKIP() << "no mpirun here";
-    // The ranks see that mpirun is gone and end.
-    int resumed = 2;
-    for (int i = 0; i < 100 && resumed == 2; ++i) {
-        resumed = run(sweep(scene_, out, true));
-        if (resumed == 2) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+}
+
+TEST_F(SweepProcess, AFullDiskLeavesAStoreToGoOnWith) {
+    const fs::path whole = folder_ / "whole";
+    const fs::path out = folder_ / "out";
+    const int code = run(sweep(scene_, whole));
+    // Room for the tables of the store and some rows of it.
+    EXPECT_EQ(run(sweep(scene_, out), {.file_size = 150'000}), 2) << output();
+    EXPECT_NE(output().find((out / "results.sqlite").string()), std::string::npos) << output();
+    EXPECT_EQ(output().find('\n'), output().size() - 1) << output();
+    EXPECT_EQ(run(sweep(scene_, out, true)), code) << output();
+    expect_same(out, whole);
+}
+
+TEST_F(SweepProcess, AReadOnlyFolderIsRefusedAndKept) {
+    const fs::path out = folder_ / "out";
+    const int code = run(sweep(scene_, out));
+    EXPECT_TRUE(code == 0 || code == 4) << output();
+    const std::string store = contents(out / "results.sqlite");
+    constexpr auto shut = fs::perms::group_write | fs::perms::others_write | fs::perms::owner_write;
+    fs::permissions(folder_, fs::perms::others_read | fs::perms::others_exec | fs::perms::group_read | fs::perms::group_exec, fs::perm_options::add);
+    for (const auto& place : {out / "charts", out}) fs::permissions(place, shut, fs::perm_options::remove);
+    for (const auto& words : {sweep(scene_, out), sweep(scene_, out, true), sweep(scene_, out / "new"),
+                              std::vector<std::string>{NSMA_PROGRAM, "export", out.string()},
+                              std::vector<std::string>{NSMA_PROGRAM, "plot", out.string()}}) {
+        const int refused = run(words, {.no_rights = true});
+        if (refused == 126 || refused == 127) GTEST_SKIP() << "no other user, or none who reaches the program";
+        EXPECT_EQ(refused, 2) << words[1] << ": " << output();
+        EXPECT_NE(output().find(out.string()), std::string::npos) << output();
+        EXPECT_EQ(output().find('\n'), output().size() - 1) << output();
     }
-    EXPECT_EQ(resumed, code) << output();
-    expect_same(out, alone);
+    EXPECT_EQ(contents(out / "results.sqlite"), store);
+    for (const auto& place : {out / "charts", out}) fs::permissions(place, fs::perms::owner_write, fs::perm_options::add);
+    EXPECT_EQ(run(sweep(scene_, out, true)), code) << output();
 }
 
 TEST_F(SweepProcess, RefusalsAreOneLine) {

@@ -31,8 +31,8 @@ void sieve(benchmark::State& state) {
 }
 BENCHMARK(sieve)->Arg(125)->Arg(250)->Arg(500)->Arg(1000)->Unit(benchmark::kMillisecond);
 
-// Verdict and least energy of each of them, by linear program and least norm where the sieve leaves one.
-void scan_linear(benchmark::State& state) {
+// Verdict and energy interval of each of them that the sieve leaves by linear program; of each with an exact proof.
+void scan_all(benchmark::State& state, ScanMethod method) {
     Scene scene;
     scene.mesh.cells = static_cast<int>(state.range(0));
     scene.patterns = PeriodSelection{{0.0, 4.0}, std::nullopt};
@@ -42,12 +42,15 @@ void scan_linear(benchmark::State& state) {
         scan(scene, [&](const PatternRecord& record) {
             admissible += record.verdict == Verdict::admissible;
             failed += record.verdict == Verdict::failed;
-        }, [] { return true; }, ScanMethod::linear);
+        }, [] { return true; }, method);
     }
     state.counters["admissible"] = static_cast<double>(admissible);
     state.counters["failed"] = static_cast<double>(failed);
 }
+void scan_linear(benchmark::State& state) { scan_all(state, ScanMethod::linear); }
+void scan_certified(benchmark::State& state) { scan_all(state, ScanMethod::certified); }
 BENCHMARK(scan_linear)->Arg(25)->Arg(50)->Arg(100)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(scan_certified)->Arg(25)->Arg(50)->Arg(100)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 // The kernel of (16 N/6, 4 N/6), m = N/1.5, by cycles and by singular values of the literal matrix.
 Pattern proportional(int cells) { return {cells, 16 * cells / 6, 4 * cells / 6}; }
@@ -154,6 +157,24 @@ void solve_condensed(benchmark::State& state) { solve_form(state, false); }
 void solve_lifted(benchmark::State& state) { solve_form(state, true); }
 BENCHMARK(solve_condensed)->Arg(48)->Arg(96)->Arg(192)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
 BENCHMARK(solve_lifted)->Arg(48)->Arg(96)->Arg(192)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+// The same patterns from end to end at 1.5 E_min: verdict and interval with their proof, then the level by Ipopt alone,
+// polished, bounded and replayed.
+void whole_orbit(benchmark::State& state) {
+    const int m = static_cast<int>(state.range(0));
+    const int cells = 5 * m / 4;
+    OrbitAnswer answer;
+    for (auto _ : state) {
+        const PatternProblem problem = pattern_problem({cells, 2 * cells + m, 2 * cells - m}, 1);
+        OrbitSolverOptions options;
+        options.solvers = SolverChoice::ipopt;
+        OrbitSolver solver(options);
+        answer = solver.solve(Bar{}, problem, {.level = 1.5 * *problem.interval.least, .reference = {}});
+    }
+    state.counters["admissible"] = answer.verdict == Verdict::admissible;
+    state.counters["gap"] = answer.optimality ? answer.optimality->gap : 1.0;
+}
+BENCHMARK(whole_orbit)->Arg(48)->Arg(96)->Arg(192)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 // What rank 0 does for one result: read the message, store it, choose the next unit, pack it. The number is N.
 void serve(benchmark::State& state) {

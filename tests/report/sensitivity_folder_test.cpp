@@ -1,9 +1,15 @@
 #include "nsma/report/sensitivity_folder.hpp"
 
+#include <cmath>
 #include <fstream>
+#include <map>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
+
+#include "nsma/report/scene_file.hpp"
 
 namespace {
 
@@ -24,12 +30,12 @@ struct Study {
     nsma::SensitivitySummary summary;
 };
 
-Study study(const nsma::Scene& scene) {
+Study study(const nsma::Scene& scene, const std::vector<double>& amounts = {0, 0.1, 0.3}) {
     Study result;
     nsma::SensitivityRequest request;
     request.solver.solvers = nsma::SolverChoice::nlopt;
     request.solver.bound_nodes = 0;
-    request.amounts = {0, 0.1, 0.3};
+    request.amounts = amounts;
     result.summary = nsma::sensitivity(scene, request, result.records, [] { return true; });
     return result;
 }
@@ -67,6 +73,69 @@ TEST(SensitivityFolder, EveryFileHasOneNumberOfFields) {
         }
         EXPECT_GT(rows, 1) << file;
     }
+}
+
+// Fields of a line of a table; no field that is read here holds a comma.
+std::vector<std::map<std::string, std::string>> table_of(const std::string& text) {
+    std::vector<std::map<std::string, std::string>> rows;
+    std::vector<std::string> names;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+        if (line.front() == '#') continue;
+        std::vector<std::string> fields;
+        std::istringstream words(line);
+        for (std::string word; std::getline(words, word, ',');) fields.push_back(word);
+        if (names.empty()) {
+            names = fields;
+            continue;
+        }
+        auto& row = rows.emplace_back();
+        for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = i < fields.size() ? fields[i] : "";
+    }
+    return rows;
+}
+
+// The steel rod in SI units and the bar of units: the same elasticities, and each again from the
+// columns in SI.
+TEST(SensitivityFolder, ElasticitiesDoNotDependOnUnits) {
+    const fs::path problems = NSMA_PROBLEMS;
+    nsma::Scene unit = nsma::read_scene(problems / "first-mode.toml");
+    nsma::Scene steel = nsma::read_scene(problems / "steel-rod.toml");
+#if defined(__SANITIZE_ADDRESS__)
+    unit.mesh.cells = steel.mesh.cells = 6;
+#endif
+    unit.levels = steel.levels = {3.0, 12.6};
+    const auto prices = [](const nsma::Scene& scene) {
+        const Study found = study(scene, {});
+        return table_of(nsma::sensitivity_text("prices.csv", scene, found.records, found.summary));
+    };
+    const auto one = prices(unit);
+    const auto other = prices(steel);
+    ASSERT_EQ(one.size(), other.size());
+    int compared = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        const auto& a = one[i];
+        const auto& b = other[i];
+        ASSERT_EQ(a.at("kind"), b.at("kind")) << i;
+        for (const char* side : {"right", "left"}) {
+            const std::string& elasticity = a.at(std::string("elasticity_") + side);
+            ASSERT_EQ(elasticity.empty(), b.at(std::string("elasticity_") + side).empty());
+            if (elasticity.empty()) continue;
+            const double expected = std::stod(elasticity);
+            const double tolerance = 1e-10 * (1 + std::abs(expected));
+            EXPECT_NEAR(std::stod(b.at(std::string("elasticity_") + side)), expected, tolerance) << i;
+            const std::string& parameter = b.at("parameter");
+            const nsma::Bar& bar = steel.bar;
+            const double energy_unit = bar.young_modulus * bar.area * bar.gap * bar.gap / (2 * bar.length);
+            const double amount = b.at("parameter_unit") == "N" ? bar.young_modulus * bar.area * bar.gap / bar.length
+                                  : parameter == "energy"       ? std::stod(b.at("level")) * energy_unit
+                                                                : bar.gap;
+            const double objective = std::stod(b.at("objective_value")) * energy_unit;
+            EXPECT_NEAR(std::stod(b.at(std::string(side) + "_si")) * amount / objective, expected, tolerance) << i;
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 100);
 }
 
 TEST(SensitivityFolder, RefusesAnotherScene) {

@@ -35,13 +35,16 @@ struct OrbitSlope {
     std::string reason;
 };
 
+class OptimumAnalysis;
+
 /// First-order sensitivity of one optimum, from our own KKT system over all rows of COND1-3
 /// (units: those of Shift and of objective_of_waves):
 ///   grad f + sum y_i row_i + nu contact + 2 mu (energy) = 0,  y >= 0,  V' = -(y, nu, mu) . rhs'.
-/// Unique multipliers give the derivative. Otherwise V' = min grad f . d over the linearised
-/// constraints, a linear program each way. Where the level is an end of the energy interval a
-/// projection on the critical cone gives the root of the square-root branch. What lies between
-/// `active` and `inactive` is neither, and refused.
+/// Each one-sided derivative is the greatest V' over the multipliers (y, nu, mu) of the point, a
+/// linear program where they are not unique. Where the level is an end of the energy interval
+/// that end's own derivative decides whether there is an orbit, and a projection on the critical
+/// cone gives the root of the square-root branch. What lies between `active` and `inactive` is
+/// neither, and refused. `set` must outlive this.
 /// Source: J. F. Bonnans, A. Shapiro, SIAM Review 40 (1998) 228-264.
 class OptimumSensitivity {
 public:
@@ -71,7 +74,8 @@ public:
     [[nodiscard]] bool nondegenerate() const;  ///< independent active rows, positive multipliers
     [[nodiscard]] bool tied() const;           ///< another optimum of the same value is known
     [[nodiscard]] std::vector<int> active_rows() const;  ///< of the set
-    [[nodiscard]] double kkt_residual() const;           ///< relative to 1 + |grad f|, scaled
+    /// Relative to 1 + |grad f|, scaled; absent where there are no multipliers.
+    [[nodiscard]] std::optional<double> kkt_residual() const;
     /// |delta f_delta + 2 e f_e - k f|/|k f| with the multipliers, k the degree of the objective
     /// (2; 1 for least_force). Absent for `nearest` and where there are no multipliers.
     [[nodiscard]] std::optional<double> euler_defect() const;
@@ -81,8 +85,7 @@ public:
     [[nodiscard]] OrbitSlope orbit_slope(const Shift& direction) const;
 
 private:
-    struct Analysis;
-    std::vector<std::unique_ptr<Analysis>> branches_;  // the optimum, then its ties
+    std::vector<std::unique_ptr<OptimumAnalysis>> branches_;  // the optimum, then its ties
 };
 
 }  // namespace nsma

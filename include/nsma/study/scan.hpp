@@ -15,7 +15,7 @@ namespace nsma {
 
 /// What stands behind the verdicts of a scan.
 enum class ScanMethod {
-    certified,  ///< linear program, least norm and an exact certificate of every pattern
+    certified,  ///< closed form, or linear program and least norm; an exact certificate of every pattern
     linear,     ///< the sieve in integers; what it leaves by linear program and least norm
     integers    ///< the sieve alone
 };

@@ -53,7 +53,7 @@ struct OptimumRecord {
     bool nondegenerate = false;
     bool tied = false;
     std::string refusal;                           ///< nothing can be said: why
-    double kkt_residual = 0;
+    std::optional<double> kkt_residual;             ///< relative; absent without multipliers
     std::optional<double> euler_defect;            ///< relative
     std::vector<Price> prices;
     std::vector<OrbitDerivative> derivatives;
