@@ -252,12 +252,13 @@ unset label 1
 set lmargin screen 0.59
 set rmargin screen 0.98
 set title 'greatest energy E_{{max}}/E_g'
+set xlabel 'amount allowed: length/|d|, tension/(YS|d|/L)'
 plot {greatest}
 set lmargin screen 0.09
 set rmargin screen 0.48
 set tmargin screen 0.43
 set bmargin screen 0.13
-set xlabel 'amount allowed: length/|d|, tension/(YS|d|/L)'
+set yrange [0:1.05]
 set title {objective}
 plot {objectives}
 unset title
@@ -265,7 +266,7 @@ unset xlabel
 set border 0
 unset xtics
 unset ytics
-set key at screen 0.58, screen 0.40 left top vertical maxrows 7 Left reverse samplen 4
+set key at screen 0.58, screen 0.38 left top vertical maxrows 7 Left reverse samplen 4
 plot [0:1] [0:1] {legend}
 unset multiplot
 )",
