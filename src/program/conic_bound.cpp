@@ -15,6 +15,7 @@ constexpr int stall_every = 200;
 constexpr double stall_tolerance = 0.02;
 // Within this of the target the splitting method is slow rather than stuck: it is let run.
 constexpr double close_gap = 1e-3;
+constexpr std::size_t product_trials = 16;  // multipliers nu tried, each one eigenvalue
 
 // The program in homogeneous form over the unit sphere: minimise x' C x.
 struct Homogeneous {
@@ -217,6 +218,39 @@ private:
 };
 
 }  // namespace
+
+double product_bound(const Program& program) {
+    const Homogeneous form = homogenise(program);
+    if (!form.valid || form.contact.size() == 0) return -no_bound;
+    const auto n = program.variables();
+    // What is left after the products are off bends where one of them changes sign.
+    std::vector<double> bends;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        for (Eigen::Index j = 0; j < i; ++j) {
+            const double product = form.contact[i] * form.contact[j];
+            if (product != 0) bends.push_back(-form.cost(i, j) / product);
+        }
+    }
+    std::sort(bends.begin(), bends.end());
+    const double least_step = bends.empty() ? 0.0 : 1e-9 * (bends.back() - bends.front());
+    bends.erase(std::unique(bends.begin(), bends.end(), [&](double a, double b) { return b - a <= least_step; }),
+                bends.end());
+    double best = -no_bound;
+    const std::size_t trials = std::min(bends.size(), product_trials);
+    for (std::size_t k = 0; k < trials; ++k) {
+        const double nu = bends[trials == 1 ? 0 : k * (bends.size() - 1) / (trials - 1)];
+        Eigen::MatrixXd rest = form.cost + nu * form.contact * form.contact.transpose();
+        for (Eigen::Index i = 0; i < n; ++i) {
+            for (Eigen::Index j = 0; j < n; ++j) {
+                if (i != j && program.lower[i] == 0 && program.lower[j] == 0) rest(i, j) = std::min(rest(i, j), 0.0);
+            }
+        }
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(rest, Eigen::EigenvaluesOnly);
+        const double rounding = 1e-14 * spectrum.eigenvalues().cwiseAbs().maxCoeff();
+        best = std::max(best, spectrum.eigenvalues()[0] - rounding - nu * form.contact_square);
+    }
+    return best;
+}
 
 ConicBound conic_bound(const Program& program, double target, const ConicBoundOptions& options) {
     ConicBound result;

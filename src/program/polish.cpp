@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include "boundary.hpp"
 #include "nsma/program/least_squares.hpp"
 
 namespace nsma {
@@ -14,159 +16,12 @@ namespace {
 
 constexpr int halvings_limit = 40;
 constexpr double objective_rounding = 1e-15;  // relative to 1 + |f|: a few units in the last place
+constexpr double sphere_rounding = 1e-14;  // of its equation and COND2's, sums of up to some hundred terms of order one
+constexpr double support_rounding = 1e-13;  // relative; rows are scaled to order one
 constexpr double nearly_active = 1e-6;  // slack from which descent no longer comes to a row by itself
-constexpr double rank_tolerance = 1e-11;  // rows are scaled to order one
-
-enum class Kind { inequality, lower, upper };
-struct Row {
-    Kind kind;
-    Eigen::Index index;
-};
-
-// Orthonormal basis of the space orthogonal to the rows of `matrix`.
-Eigen::MatrixXd null_space(const Eigen::MatrixXd& matrix, Eigen::Index n) {
-    if (matrix.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
-    qr.setThreshold(rank_tolerance);
-    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(n, n - qr.rank());
-    basis.bottomRows(basis.cols()).setIdentity();
-    basis.applyOnTheLeft(qr.householderQ().setLength(qr.rank()));
-    return basis;
-}
-
-// The feasible set as rows a.x <= b, equalities apart, and the moves along its boundary.
-class Boundary {
-public:
-    explicit Boundary(const Program& program)
-        : program_(program), equalities_(program.equalities) {}
-
-    [[nodiscard]] double slack(const Row& row, const Eigen::VectorXd& x) const {
-        switch (row.kind) {
-            case Kind::inequality:
-                return program_.inequality_values[row.index] -
-                       program_.inequalities.row(row.index).dot(x);
-            case Kind::lower: return x[row.index] - program_.lower[row.index];
-            default: return program_.upper[row.index] - x[row.index];
-        }
-    }
-
-    [[nodiscard]] std::vector<Row> active(const Eigen::VectorXd& x, double tolerance) const {
-        std::vector<Row> rows;
-        for_each_row([&](const Row& row) {
-            if (slack(row, x) <= tolerance) rows.push_back(row);
-        });
-        return rows;
-    }
-
-    [[nodiscard]] Eigen::RowVectorXd normal(const Row& row) const {
-        const auto n = program_.variables();
-        Eigen::RowVectorXd result = Eigen::RowVectorXd::Zero(n);
-        if (row.kind == Kind::inequality) {
-            result = program_.inequalities.row(row.index);
-        } else {
-            result[row.index] = row.kind == Kind::lower ? -1.0 : 1.0;
-        }
-        return result;
-    }
-
-    [[nodiscard]] Eigen::MatrixXd normals(const std::vector<Row>& rows) const {
-        Eigen::MatrixXd result(static_cast<Eigen::Index>(rows.size()), program_.variables());
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            result.row(static_cast<Eigen::Index>(i)) = normal(rows[i]);
-        }
-        return result;
-    }
-
-    // Equalities above the normals of `rows`: the flat on which the point may move.
-    [[nodiscard]] Eigen::MatrixXd flat(const std::vector<Row>& rows) const {
-        Eigen::MatrixXd result(equalities_.rows() + static_cast<Eigen::Index>(rows.size()),
-                               program_.variables());
-        result.topRows(equalities_.rows()) = equalities_;
-        result.bottomRows(static_cast<Eigen::Index>(rows.size())) = normals(rows);
-        return result;
-    }
-
-    // Nearest point of the flat on which `rows` and the equalities hold exactly.
-    [[nodiscard]] Eigen::VectorXd project(const std::vector<Row>& rows, Eigen::VectorXd x) const {
-        const Eigen::MatrixXd system = flat(rows);
-        if (system.rows() == 0) return x;
-        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-        decomposition.setThreshold(rank_tolerance);
-        decomposition.compute(system);
-        for (int pass = 0; pass < 2; ++pass) {
-            Eigen::VectorXd defect(system.rows());
-            defect.head(equalities_.rows()) = program_.equality_values - equalities_ * x;
-            for (std::size_t i = 0; i < rows.size(); ++i) {
-                defect[equalities_.rows() + static_cast<Eigen::Index>(i)] = slack(rows[i], x);
-            }
-            x += decomposition.solve(defect);
-        }
-        for (const auto& row : rows) {  // bounds hold to the bit
-            if (row.kind == Kind::lower) x[row.index] = program_.lower[row.index];
-            if (row.kind == Kind::upper) x[row.index] = program_.upper[row.index];
-        }
-        return x;
-    }
-
-    // Moves x back to the sphere within x + span(basis); false where the flat misses it.
-    [[nodiscard]] bool retract(const Eigen::MatrixXd& basis, Eigen::VectorXd& x) const {
-        if (program_.sphere_variables == 0) return true;
-        for (int pass = 0; pass < 3; ++pass) {
-            const Eigen::VectorXd radial = basis * (basis.transpose() * on_sphere(x));
-            const Eigen::VectorXd w = on_sphere(radial);
-            const double a = w.squaredNorm();
-            const double b = x.dot(w);
-            const double c = program_.sphere_residual(x);
-            const double discriminant = b * b - a * c;
-            if (a <= 0 || discriminant < 0) return std::abs(c) <= 1e-14;
-            // The root near zero of a s^2 + 2 b s + c, without cancellation.
-            const double root = b + std::copysign(std::sqrt(discriminant), b);
-            if (root == 0) return false;
-            x -= (c / root) * radial;
-            if (std::abs(c) <= 1e-15) break;
-        }
-        return std::abs(program_.sphere_residual(x)) <= 1e-13;
-    }
-
-    // x with everything off the sphere set to zero: the gradient of the sphere is twice this.
-    [[nodiscard]] Eigen::VectorXd on_sphere(Eigen::VectorXd x) const {
-        x.tail(x.size() - program_.sphere_variables).setZero();
-        return x;
-    }
-
-    // Largest t <= 1 for which no row is crossed along x + t direction; blocking row if t < 1.
-    double step_to_boundary(const Eigen::VectorXd& x, const Eigen::VectorXd& direction,
-                            double tolerance, std::vector<Row>& blocking) const {
-        double step = 1.0;
-        Row first{Kind::inequality, -1};
-        for_each_row([&](const Row& row) {
-            const double rate = row.kind == Kind::inequality
-                                    ? program_.inequalities.row(row.index).dot(direction)
-                                    : (row.kind == Kind::lower ? -1.0 : 1.0) * direction[row.index];
-            if (rate <= tolerance) return;
-            const double t = std::max(slack(row, x), 0.0) / rate;
-            if (t < step) {
-                step = t;
-                first = row;
-            }
-        });
-        if (first.index >= 0) blocking.push_back(first);
-        return step;
-    }
-
-private:
-    template <typename Visit>
-    void for_each_row(const Visit& visit) const {
-        for (Eigen::Index i = 0; i < program_.inequalities.rows(); ++i) visit({Kind::inequality, i});
-        for (Eigen::Index j = 0; j < program_.variables(); ++j) {
-            if (program_.lower[j] > -no_bound) visit({Kind::lower, j});
-            if (program_.upper[j] < no_bound) visit({Kind::upper, j});
-        }
-    }
-
-    const Program& program_;
-    Eigen::MatrixXd equalities_;
-};
+constexpr double curvature_rounding = 1e-9;  // relative; a flat direction is no way down
+constexpr double escape_decrease = 1e-12;  // relative to 1 + |f|: more than rounding
+constexpr int escape_halvings = 12;
 
 // Multipliers at x and the projection of -gradient on the tangent cone of its active rows.
 struct FirstOrder {
@@ -174,6 +29,23 @@ struct FirstOrder {
     Eigen::VectorXd direction;
     std::vector<Row> supporting;  // active rows with a positive multiplier, independent
 };
+
+// Least squares over all columns where that is nonnegative already: every active row pushes back, the usual case at the
+// end of a descent, for which adding columns one by one would take their number of decompositions.
+std::optional<NonnegativeSolution> all_supporting(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
+    if (matrix.cols() == 0 || matrix.cols() > matrix.rows()) return std::nullopt;
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix);
+    NonnegativeSolution solution;
+    solution.y = qr.solve(target);
+    if (!solution.y.allFinite() || solution.y.minCoeff() <= 0) return std::nullopt;
+    solution.y += qr.solve(target - matrix * solution.y);
+    solution.residual = target - matrix * solution.y;
+    const double orthogonal = support_rounding * target.norm();  // dependent columns leave more
+    if (solution.y.minCoeff() <= 0 || (matrix.transpose() * solution.residual).cwiseAbs().maxCoeff() > orthogonal) return std::nullopt;
+    for (int k = 0; k < matrix.cols(); ++k) solution.support.push_back(k);
+    solution.converged = true;
+    return solution;
+}
 
 FirstOrder first_order(const Program& program, const Boundary& boundary,
                        const std::vector<Row>& active, const Eigen::VectorXd& x) {
@@ -187,8 +59,10 @@ FirstOrder first_order(const Program& program, const Boundary& boundary,
 
     const Eigen::VectorXd gradient = program.objective_gradient(x);
     const Eigen::MatrixXd normals = boundary.normals(active);
-    const NonnegativeSolution solution =
-        nonnegative_least_squares((normals * basis).transpose(), -(basis.transpose() * gradient));
+    const Eigen::MatrixXd pushes = (normals * basis).transpose();
+    const Eigen::VectorXd pull = -(basis.transpose() * gradient);
+    auto together = all_supporting(pushes, pull);
+    const NonnegativeSolution solution = together ? std::move(*together) : nonnegative_least_squares(pushes, pull);
 
     FirstOrder result;
     result.direction = basis * solution.residual;
@@ -217,11 +91,14 @@ FirstOrder first_order(const Program& program, const Boundary& boundary,
     return result;
 }
 
-// Newton direction of the KKT system on x + span(basis) with the sphere, or the given descent
-// direction where the system is not positive definite along the sphere.
-Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundary,
-                                 const Eigen::MatrixXd& basis, const Eigen::VectorXd& x,
-                                 double sphere_multiplier, const Eigen::VectorXd& descent) {
+// Directions along x + span(basis) and the sphere, and the Hessian of the Lagrangian on them.
+struct Tangent {
+    Eigen::MatrixXd span;     // orthonormal columns
+    Eigen::MatrixXd hessian;
+};
+
+Tangent tangent_of(const Program& program, const Boundary& boundary, const Eigen::MatrixXd& basis,
+                   const Eigen::VectorXd& x, double sphere_multiplier) {
     const auto k = basis.cols();
     Eigen::MatrixXd tangent = Eigen::MatrixXd::Identity(k, k);
     Eigen::MatrixXd hessian = basis.transpose() * (program.hessian * basis);
@@ -230,9 +107,25 @@ Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundar
         hessian += 2.0 * sphere_multiplier * (top.transpose() * top);
         tangent = null_space((basis.transpose() * boundary.on_sphere(x)).transpose(), k);
     }
-    const Eigen::MatrixXd span = basis * tangent;
+    return {basis * tangent, tangent.transpose() * hessian * tangent};
+}
+
+// What rounding does to the objective between two points of the sphere: its own, and the multiplier
+// times what the sphere's equation is off by, the larger part where the sphere hardly cuts the
+// flat (close to E_min).
+double rounding_between(const Program& program, double sphere_multiplier, const Polished& at, const Eigen::VectorXd& x) {
+    const double own = objective_rounding * (1.0 + std::abs(at.objective)) + sphere_rounding * std::abs(sphere_multiplier);
+    if (program.sphere_variables == 0) return own;
+    return own + std::abs(sphere_multiplier * (program.sphere_residual(x) - program.sphere_residual(at.x)));
+}
+
+// Newton direction of the KKT system on x + span(basis) with the sphere, or the given descent
+// direction where the system is not positive definite along the sphere.
+Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundary,
+                                 const Eigen::MatrixXd& basis, const Eigen::VectorXd& x,
+                                 double sphere_multiplier, const Eigen::VectorXd& descent) {
+    const auto [span, reduced] = tangent_of(program, boundary, basis, x, sphere_multiplier);
     if (span.cols() == 0) return Eigen::VectorXd::Zero(x.size());  // a point: nothing to reduce over
-    const Eigen::MatrixXd reduced = tangent.transpose() * hessian * tangent;
     const Eigen::LDLT<Eigen::MatrixXd> factor(reduced);
     const Eigen::VectorXd gradient = span.transpose() * program.objective_gradient(x);
     const double scale = std::max(reduced.cwiseAbs().maxCoeff(), 1e-300);
@@ -246,6 +139,42 @@ Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundar
     // Exact minimiser along the line where the curvature allows, else a bold step.
     if (curvature > 1e-12 * along.squaredNorm()) return along * (along.squaredNorm() / curvature);
     return along * (0.5 / std::max(along.norm(), 1e-300));
+}
+
+// Direction along the active rows in which a stationary point is a maximum or saddle: that of the
+// least curvature of the Lagrangian; size 0 where no curvature is negative.
+Eigen::VectorXd escape_direction(const Program& program, const Boundary& boundary,
+                                 const std::vector<Row>& active, const Eigen::VectorXd& x,
+                                 double sphere_multiplier) {
+    const Eigen::MatrixXd basis = boundary.directions(active);
+    const auto [span, hessian] = tangent_of(program, boundary, basis, x, sphere_multiplier);
+    if (span.cols() == 0) return {};
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(hessian);
+    const double scale = spectrum.eigenvalues().cwiseAbs().maxCoeff();
+    if (spectrum.eigenvalues()[0] >= -curvature_rounding * scale) return {};
+    return span * spectrum.eigenvectors().col(0);
+}
+
+// Leaves a stationary point that is no minimum along its active rows; false at a minimum.
+bool escaped(const Program& program, const Boundary& boundary, const std::vector<Row>& active,
+             double sphere_multiplier, const PolishOptions& options, Polished& result) {
+    const Eigen::VectorXd direction = escape_direction(program, boundary, active, result.x, sphere_multiplier);
+    if (direction.size() == 0) return false;
+    const Eigen::MatrixXd basis = boundary.directions(active);
+    for (const double side : {0.5, -0.5}) {  // half the radius of the sphere
+        std::vector<Row> blocking;
+        double step = boundary.step_to_boundary(result.x, side * direction, 1e-14, blocking);
+        for (int halving = 0; halving < escape_halvings; ++halving, step *= 0.5) {
+            Eigen::VectorXd x = boundary.project(active, result.x + step * side * direction);
+            if (!boundary.retract(basis, x) || program.violation(x) > options.feasibility) continue;
+            const double objective = program.objective(x);
+            if (objective >= result.objective - escape_decrease * (1.0 + std::abs(result.objective))) continue;
+            result.x = std::move(x);
+            result.objective = objective;
+            return true;
+        }
+    }
+    return false;
 }
 
 // Best bound inf L over the flat of the equalities, over the sphere's multiplier only.
@@ -291,13 +220,11 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
     result.x = start;
     if (start.size() != program.variables() || !start.allFinite()) return result;
     const Boundary boundary(program);
-    const auto n = program.variables();
-
     // Clean the start: its active rows hold exactly, and it lies on the sphere.
     {
         const auto rows = boundary.active(start, options.activity);
         Eigen::VectorXd x = boundary.project(rows, start);
-        if (boundary.retract(null_space(boundary.flat(rows), n), x) &&
+        if (boundary.retract(boundary.directions(rows), x) &&
             program.violation(x) <= std::max(options.feasibility, program.violation(start))) {
             result.x = std::move(x);
         }
@@ -308,7 +235,10 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
         const auto active = boundary.active(result.x, options.activity);
         order = first_order(program, boundary, active, result.x);
         const double gradient_scale = 1.0 + program.objective_gradient(result.x).norm();
-        if (order.direction.norm() <= 1e-3 * options.stationarity * gradient_scale) break;
+        if (order.direction.norm() <= 1e-3 * options.stationarity * gradient_scale) {
+            if (!escaped(program, boundary, active, order.multipliers.sphere, options, result)) break;
+            continue;
+        }
 
         // Rows that the projected gradient leaves may be left; the others hold.
         std::vector<Row> working;
@@ -317,7 +247,7 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
             const double rounding = 1e-9 * order.direction.norm() + 1e-14 * gradient_scale;
             if (rate >= -rounding) working.push_back(row);
         }
-        const Eigen::MatrixXd basis = null_space(boundary.flat(working), n);
+        const Eigen::MatrixXd basis = boundary.directions(working);
         bool moved = false;
         for (const bool newton : {true, false}) {
             Eigen::VectorXd direction =
@@ -330,19 +260,19 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
             for (int halving = 0; halving < halvings_limit && !moved; ++halving) {
                 const auto& rows = halving == 0 ? blocked : working;
                 Eigen::VectorXd x = boundary.project(rows, result.x + step * direction);
-                if (boundary.retract(null_space(boundary.flat(rows), n), x) &&
+                if (boundary.retract(boundary.directions(rows), x) &&
                     program.violation(x) <= options.feasibility) {
                     const double objective = program.objective(x);
+                    const double rounding =
+                        rounding_between(program, order.multipliers.sphere, result, x);
                     // Closer than the root of rounding to an optimum the objective shows no
                     // progress: there a full Newton step is judged by what it leaves of the slope.
                     const auto slope_halved = [&] {
-                        return newton && halving == 0 &&
-                               objective <= result.objective +
-                                                objective_rounding * (1.0 + std::abs(result.objective)) &&
+                        return newton && halving == 0 && objective <= result.objective + rounding &&
                                first_order(program, boundary, boundary.active(x, options.activity), x)
                                        .direction.norm() <= 0.5 * order.direction.norm();
                     };
-                    if (objective < result.objective || slope_halved()) {
+                    if (objective < result.objective - rounding || slope_halved()) {
                         moved = true;
                         result.x = std::move(x);
                         result.objective = objective;
@@ -360,7 +290,7 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
         if (order.multipliers.residual <= options.stationarity) break;
         const auto rows = boundary.active(result.x, near);
         Eigen::VectorXd x = boundary.project(rows, result.x);
-        if (!boundary.retract(null_space(boundary.flat(rows), n), x) || program.violation(x) > options.feasibility) continue;
+        if (!boundary.retract(boundary.directions(rows), x) || program.violation(x) > options.feasibility) continue;
         FirstOrder there = first_order(program, boundary, boundary.active(x, options.activity), x);
         if (there.multipliers.residual > options.stationarity) continue;
         result.x = std::move(x);

@@ -19,6 +19,9 @@ constexpr Eigen::Index slsqp_limit = 64;
 // Unknowns beyond which a relaxation, a matrix of their square under hundreds of eigenvalue decompositions, costs more
 // than all the rest; the bound of the Lagrangian stands.
 constexpr int relaxation_limit = 48;
+// Unknowns beyond which Ipopt comes to an optimum in less time than the descent from a segment, which takes a step for
+// each bound it meets.
+constexpr Eigen::Index segment_limit = 48;
 
 }  // namespace
 
@@ -42,6 +45,11 @@ Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Patt
 std::optional<Best> Search::run() {
     const bool until_proved = options_.solvers == SolverChoice::proof;
     if (until_proved) {
+        const auto begin = start(0);
+        if (begin && program_.program.variables() > segment_limit && attempt(*begin, "ipopt", 0, ipopt_) &&
+            ipopt_.optimality.global) {
+            return ipopt_;
+        }
         if (auto point = segment(); point && point->optimality.global) return point;
     }
     if (with_nlopt_) search_with_nlopt();
@@ -88,7 +96,7 @@ void Search::search_with_nlopt() {
 // Starts elsewhere, and goes on to further starts only while Ipopt holds a worse optimum.
 void Search::search_with_ipopt() {
     for (int k = 0; k < starts_ && !ipopt_.optimality.global; ++k) {
-        const int number = k == 0 ? 0 : next_++;
+        const int number = ipopt_.run.name.empty() ? 0 : next_++;
         const auto begin = start(number);
         if (!begin) return;
         attempt(*begin, "ipopt", number, ipopt_);
@@ -106,7 +114,7 @@ void Search::ask(const Best& better, Best& worse, const char* solver) {
 // optima; the solvers are then asked about those.
 void Search::settle() {
     const Best* best = &ipopt_;
-    if (nlopt_.usable && nlopt_.rank < best->rank) best = &nlopt_;
+    if (nlopt_.usable && (!best->usable || preferable(nlopt_, *best))) best = &nlopt_;
     const int unknowns = problem_.set.reduction.variables();
     if (options_.bound_nodes < 1 || unknowns > relaxation_limit || !best->usable || best->optimality.global || !level_) return;
     std::optional<Polished> better;
@@ -134,8 +142,9 @@ void Search::settle() {
     for (Best* one : {&ipopt_, &nlopt_, &relaxed_}) {
         if (!one->usable) continue;
         one->optimality.nodes = bound.nodes;
-        if (bound.value > -infinity) {
-            set_bound(program_.program.objective(program_.point(one->candidate.gamma)), bound.value, one->optimality);
+        const double value = std::max(bound.value, product_bound_.value_or(-infinity));
+        if (value > -infinity) {
+            set_bound(program_.program.objective(program_.point(one->candidate.gamma)), value, one->optimality);
         }
     }
 }
@@ -177,14 +186,14 @@ bool Search::attempt(const Eigen::VectorXd& start, const std::string& solver, in
     run.usable = trial.usable;
     if (run.usable) run.objective = goal_.value(trial.candidate.gamma);
     trial.run = run;
-    const bool better = trial.usable && (!best.usable || trial.rank < best.rank);
+    const bool better = trial.usable && (!best.usable || preferable(trial, best));
     if (better || best.run.name.empty()) std::swap(best, trial);
     if (!trial.run.name.empty()) others_.push_back(trial.run);
     return run.usable;
 }
 
-// A polished point with the bound that its Lagrangian gives.
-Best Search::found(const Polished& polished, const char* method) const {
+// A polished point with the bound that its Lagrangian or products of unknowns give.
+Best Search::found(const Polished& polished, const char* method) {
     Best result;
     if (!polished.feasible) return result;
     result.usable = true;
@@ -194,10 +203,16 @@ Best Search::found(const Polished& polished, const char* method) const {
     if (polished.stationary && std::isfinite(polished.lower_bound)) {
         set_bound(polished.objective, polished.lower_bound, result.optimality);
     }
+    if (result.optimality.global) return result;
+    // No point changes this bound: it is computed once.
+    if (!product_bound_) product_bound_ = product_bound(program_.program);
+    if (*product_bound_ > -infinity && (!result.optimality.lower_bound || *product_bound_ > polished.lower_bound)) {
+        set_bound(polished.objective, *product_bound_, result.optimality);
+    }
     return result;
 }
 
-std::optional<Best> Search::segment() const {
+std::optional<Best> Search::segment() {
     const auto begin = start(0);
     if (!begin) return std::nullopt;
     Best best = found(polish(program_.program, program_.point(*begin)), "segment");
@@ -220,6 +235,13 @@ void Search::set_bound(double objective, double bound, Optimality& result) const
 double Search::difference(const Best& a, const Best& b) const {
     const double scale = std::max(std::abs(a.rank), std::abs(b.rank));
     return scale > 0 ? std::abs(a.rank - b.rank) / scale : 0.0;
+}
+
+// The lower objective; of two that agree, the one that is proved.
+bool Search::preferable(const Best& a, const Best& b) const {
+    const bool proved = a.optimality.global;
+    if (proved != b.optimality.global && difference(a, b) <= options_.agreement_tolerance) return proved;
+    return a.rank < b.rank;
 }
 
 bool Search::not_worse(const Best& a, const Best& b) const {
@@ -257,7 +279,7 @@ std::vector<const Best*> Search::ranked() const {
     for (const Best* best : {&ipopt_, &nlopt_, &relaxed_}) {
         if (best->usable) all.push_back(best);
     }
-    std::stable_sort(all.begin(), all.end(), [](const Best* a, const Best* b) { return a->rank < b->rank; });
+    std::stable_sort(all.begin(), all.end(), [this](const Best* a, const Best* b) { return preferable(*a, *b); });
     return all;
 }
 

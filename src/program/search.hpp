@@ -56,7 +56,7 @@ public:
     [[nodiscard]] bool a_solver_came_to(const Best& best) const;
     [[nodiscard]] bool is_relaxed(const Best* best) const { return best == &relaxed_; }
     /// The segment point, polished: admissible without a solver.
-    [[nodiscard]] std::optional<Best> segment() const;
+    [[nodiscard]] std::optional<Best> segment();
 
 private:
     [[nodiscard]] std::optional<Eigen::VectorXd> start(int k) const;
@@ -67,9 +67,10 @@ private:
     void settle();
     bool attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best);
     [[nodiscard]] SolverOutcome call(const std::string& solver, const Eigen::VectorXd& x);
-    [[nodiscard]] Best found(const Polished& polished, const char* method) const;
+    [[nodiscard]] Best found(const Polished& polished, const char* method);
     void set_bound(double objective, double bound, Optimality& result) const;
     [[nodiscard]] double difference(const Best& a, const Best& b) const;
+    [[nodiscard]] bool preferable(const Best& a, const Best& b) const;
     [[nodiscard]] bool not_worse(const Best& a, const Best& b) const;
 
     const OrbitSolverOptions& options_;
@@ -86,6 +87,7 @@ private:
     Best nlopt_;
     Best relaxed_;  // a better orbit that bounding came upon
     std::vector<SolverRun> others_;
+    std::optional<double> product_bound_;  // in the scale of the program
 };
 
 }  // namespace nsma

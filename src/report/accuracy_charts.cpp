@@ -13,6 +13,7 @@ namespace nsma {
 namespace {
 
 constexpr double smallest = 1e-17;  // what an error of zero is drawn at
+constexpr double smallest_contact_error = 1e-4;
 
 template <typename Record, typename Name>
 std::vector<std::string> names(const std::vector<Record>& records, Name name_of) {
@@ -45,34 +46,54 @@ std::string legend(const std::vector<std::pair<std::string, std::string>>& entri
     return text + "\n";
 }
 
-// Answers as they are, and polished ones, of one method.
 std::string program_label(const ProgramRecord& record) {
-    if (record.setting.find("tol") == std::string::npos) return record.method;
-    std::string kind = record.setting.find("polish") != std::string::npos ? "polished" : "raw";
-    if (record.setting.find("warm") != std::string::npos) kind += ", warm";
-    return record.method + ", " + kind;
+    return record.method + (record.warm ? ", warm start" : "");
 }
 
-std::string program_style(const std::string& label) {
-    const bool polished = label.find("polished") != std::string::npos;
-    const bool warm = label.find("warm") != std::string::npos;
+// The shape tells the method; filled marks are of certified answers only.
+std::string program_style(const std::string& label, bool certified) {
     if (label == "default") return "points pt 3 ps 2.2*mark lw 2.5 lc rgb '#000000'";
-    if (label == "proof first") return "points pt 1 ps 2.0*mark lw 2.5 lc rgb '#000000'";
-    if (label == "segment") return "points pt 2 ps 1.6*mark lw 2.5 lc rgb '#d55e00'";
-    const auto point = [&](int hollow, const char* colour) {
-        return fmt::format("points pt {} ps {}*mark lw 1.6 lc rgb '{}'", polished ? hollow + 1 : hollow, warm ? 0.8 : 1.3, colour);
+    if (label == "proof first") return "points pt 1 ps 2.2*mark lw 2.5 lc rgb '#000000'";
+    if (label == "segment") return "points pt 2 ps 1.7*mark lw 2.5 lc rgb '#d55e00'";
+    struct Shape {
+        const char* label;
+        int hollow;
+        double size;
+        const char* colour;
     };
-    if (label.rfind("Ipopt lifted", 0) == 0) return point(14, "#0072b2");
-    if (label.rfind("Ipopt", 0) == 0) return point(6, warm ? "#56b4e9" : "#0072b2");
-    if (label.rfind("SLSQP", 0) == 0) return point(8, "#b8500a");
-    if (label.rfind("AUGLAG+LBFGS", 0) == 0) return point(4, "#009e73");
-    if (label.rfind("AUGLAG+SLSQP", 0) == 0) return point(12, "#7a5195");
-    if (label.rfind("COBYLA", 0) == 0) return point(10, "#777777");
-    return polished ? "points pt 16 ps 1.3*mark lc rgb '#aaaaaa'" : "points pt 1 ps 1.3*mark lw 1.6 lc rgb '#aaaaaa'";
+    static constexpr std::array<Shape, 8> shapes{{{"Ipopt, warm start", 6, 0.8, "#56b4e9"},
+                                                  {"Ipopt lifted", 14, 1.3, "#0072b2"},
+                                                  {"Ipopt", 6, 1.4, "#0072b2"},
+                                                  {"SLSQP", 8, 1.4, "#b8500a"},
+                                                  {"AUGLAG+LBFGS", 4, 1.3, "#009e73"},
+                                                  {"AUGLAG+SLSQP", 12, 1.4, "#7a5195"},
+                                                  {"COBYLA", 10, 1.4, "#555555"},
+                                                  {"ISRES", 4, 0.7, "#555555"}}};
+    const auto shape = std::find_if(shapes.begin(), shapes.end(), [&](const Shape& one) { return label == one.label; });
+    if (shape == shapes.end()) return "points pt 1 ps mark lc rgb '#999999'";
+    return fmt::format("points pt {} ps {}*mark lw 1.8 lc rgb '{}'", shape->hollow + (certified ? 1 : 0), shape->size,
+                       shape->colour);
 }
+
+double drawn_error(const ProgramRecord& record) { return std::clamp(record.error, 1e-15, 10.0); }
+
+// The stairs below which no method gets.
+std::string stairs(const std::vector<const ProgramRecord*>& front, double right) {
+    std::string rows;
+    double least = 30;
+    for (const auto* record : front) {
+        if (drawn_error(*record) >= least) continue;
+        rows += fmt::format("{} {}\n{} {}\n", record->seconds.median, least, record->seconds.median, drawn_error(*record));
+        least = drawn_error(*record);
+    }
+    return rows.empty() ? rows : rows + fmt::format("{} {}\n", right, least);
+}
+
+constexpr const char* any_front = "lines lw 2 dt 3 lc rgb '#888888'";
+constexpr const char* certified_front = "lines lw 2.5 dt 1 lc rgb '#bbbbbb'";
 
 Chart program_chart(const AccuracyResults& results) {
-    Chart chart{"accuracy-programs", "", log_axes, 1000};
+    Chart chart{"accuracy-programs", "", log_axes, 1060};
     const auto labels = names(results.programs, program_label);
     std::vector<int> sizes;
     double slowest = 1e-4;
@@ -82,45 +103,41 @@ Chart program_chart(const AccuracyResults& results) {
         slowest = std::max(slowest, record.seconds.high);
         fastest = std::min(fastest, std::max(record.seconds.low, 1e-7));
     }
-    chart.commands += fmt::format("set multiplot title {} font ',15'\nset xrange [{}:{}]\nset yrange [2e-16:30]\n",
-                                  gnuplot_text("Programs: CPU time against error, one panel a size; the line joins what nothing beats"),
-                                  fastest / 2, slowest * 2);
+    chart.commands += fmt::format("set multiplot title 'One orbit at a given energy: CPU time against error, by number m of amplitudes' font ',15'\n"
+                                  "set xrange [{}:{}]\nset yrange [2e-16:30]\n", fastest / 2, slowest * 2);
     for (std::size_t k = 0; k < sizes.size(); ++k) {
-        std::string front;
-        const auto best = pareto_front(results.programs, sizes[k]);
-        const auto error = [](const ProgramRecord& record) { return std::clamp(record.error, 1e-15, 10.0); };
-        double least = 30;  // the lower envelope of the front's medians
-        for (const auto* record : best) {
-            if (error(*record) >= least) continue;
-            front += fmt::format("{} {}\n{} {}\n", record->seconds.median, least, record->seconds.median, error(*record));
-            least = error(*record);
-        }
-        if (!best.empty()) front += fmt::format("{} {}\n", slowest * 2, least);
-        const std::string front_name = fmt::format("front-{}", sizes[k]);
-        add_block(chart, front_name, front);
-        const double left = k % 2 == 0 ? 0.10 : 0.58;
-        const double top = k < 2 ? 0.92 : 0.57;
-        chart.commands += frame(left, left + 0.39, top - 0.27, top);
-        chart.commands += fmt::format("set title 'm = {}' offset 0,-0.7\nset xlabel 'CPU time of a run (s)' offset 0,0.4\n"
-                                      "set ylabel 'largest error' offset 1,0\n", sizes[k]);
-        std::string plot = fmt::format("plot '{}.dat' index '{}' using 1:2 with lines lw 2 dt 2 lc rgb '#999999'", chart.name, front_name);
-        for (const auto& label : labels) {
-            std::string rows, bars;
-            for (const auto& record : results.programs) {
-                if (record.size != sizes[k] || program_label(record) != label) continue;
-                rows += fmt::format("{} {} {} {}\n", record.seconds.median, error(record), record.seconds.low, record.seconds.high);
+        const std::string suffix = fmt::format("-{}", sizes[k]);
+        add_block(chart, "certified-front" + suffix, stairs(pareto_front(results.programs, sizes[k], true), slowest * 2));
+        add_block(chart, "front" + suffix, stairs(pareto_front(results.programs, sizes[k]), slowest * 2));
+        const double left = k % 2 == 0 ? 0.10 : 0.59;
+        const double top = k < 2 ? 0.93 : 0.55;
+        chart.commands += frame(left, left + 0.39, top - 0.30, top);
+        chart.commands += fmt::format("set title 'm = {}' offset 0,-0.7\nset xlabel '{}' offset 0,0.5\n"
+                                      "set ylabel 'largest error' offset 1,0\n", sizes[k], k + 2 < sizes.size() ? "" : "CPU time of a run (s)");
+        std::string plot = fmt::format("plot '{}.dat' index 'certified-front{}' using 1:2 with {}, '' index 'front{}' using 1:2 with {}",
+                                       chart.name, suffix, certified_front, suffix, any_front);
+        for (const bool certified : {false, true}) {
+            for (auto label = labels.rbegin(); label != labels.rend(); ++label) {  // the first ones on top
+                std::string rows;
+                for (const auto& record : results.programs) {
+                    if (record.size != sizes[k] || program_label(record) != *label || all_certified(record) != certified) continue;
+                    rows += fmt::format("{} {} {} {}\n", record.seconds.median, drawn_error(record), record.seconds.low, record.seconds.high);
+                }
+                if (rows.empty()) continue;
+                const std::string name = fmt::format("{} {} {}", certified ? "certified" : "any", sizes[k], *label);
+                add_block(chart, name, rows);
+                plot += fmt::format(", \\\n    '' index '{}' using 1:2:3:4 with xerrorbars pt 0 lw 1 lc rgb '#999999', "
+                                    "'' index '{}' using 1:2 with {}", name, name, program_style(*label, certified));
             }
-            if (rows.empty()) continue;
-            const std::string name = fmt::format("{} {}", sizes[k], label);
-            add_block(chart, name, rows);
-            plot += fmt::format(", \\\n    '' index '{}' using 1:2:3:4 with xerrorbars pt 0 lw 1 lc rgb '#bbbbbb', "
-                                "'' index '{}' using 1:2 with {}", name, name, program_style(label));
         }
         chart.commands += plot + "\n";
     }
-    std::vector<std::pair<std::string, std::string>> entries{{"Pareto front", "lines lw 2 dt 2 lc rgb '#999999'"}};
-    for (const auto& label : labels) entries.emplace_back(label, program_style(label));
-    chart.commands += legend(entries, 0.0, 0.19, 6) + "unset multiplot\n";
+    std::vector<std::pair<std::string, std::string>> entries;
+    for (const auto& label : labels) entries.emplace_back(label, program_style(label, true));
+    entries.emplace_back("hollow: not every answer certified", program_style("Ipopt", false));
+    entries.emplace_back("Pareto front, certified", certified_front);
+    entries.emplace_back("Pareto front, any", any_front);
+    chart.commands += legend(entries, 0.0, 0.16, 5) + "unset multiplot\n";
     return chart;
 }
 
@@ -133,13 +150,13 @@ std::string line_style(std::size_t index) {
     return fmt::format("linespoints pt {} dt {} ps 1.1*mark lw 1.6 lc rgb '{}'", style.point, style.dash, style.colour);
 }
 
-// Two panels that share the legend below them.
+// Panels side by side that share the legend below them.
 struct Panel {
     std::string title, x, y, columns;
     std::string extra;
 };
-Chart two_panels(const std::string& name, const std::string& title, const std::vector<std::string>& labels,
-                 const std::vector<std::string>& rows, const std::array<Panel, 2>& panels, int legend_rows) {
+Chart panels_chart(const std::string& name, const std::string& title, const std::vector<std::string>& labels,
+                   const std::vector<std::string>& rows, const std::vector<Panel>& panels, int legend_rows) {
     Chart chart{name, "", log_axes, 700};
     chart.commands += fmt::format("set multiplot title {} font ',15'\n", gnuplot_text(title));
     std::vector<std::pair<std::string, std::string>> entries;
@@ -147,9 +164,10 @@ Chart two_panels(const std::string& name, const std::string& title, const std::v
         add_block(chart, labels[i], rows[i]);
         entries.emplace_back(labels[i], line_style(i));
     }
+    const double pitch = 1.0 / static_cast<double>(panels.size());
     for (std::size_t k = 0; k < panels.size(); ++k) {
-        const double left = k == 0 ? 0.10 : 0.60;
-        chart.commands += frame(left, left + 0.38, 0.38, 0.88) +
+        const double left = pitch * static_cast<double>(k) + 0.095;
+        chart.commands += frame(left, pitch * static_cast<double>(k + 1) - 0.02, 0.38, 0.88) +
                           fmt::format("set title '{}' offset 0,-0.6\nset xlabel '{}'\nset ylabel '{}' offset 1,0\n{}plot ", panels[k].title,
                                       panels[k].x, panels[k].y, panels[k].extra);
         for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -175,11 +193,11 @@ Chart drift_chart(const AccuracyResults& results) {
         }
     }
     const std::string range = "set yrange [3e-18:30]\nset ytics add ('0' 1e-17)\n";
-    return two_panels("energy-drift",
-                      fmt::format("Drift of the first nonsmooth mode, N = {}", results.drifts.empty() ? 0 : results.drifts.front().cells),
+    return panels_chart("energy-drift",
+                      fmt::format("Drift of the first nonsmooth mode, N = {} (what leaves the frame is unstable)", results.drifts.empty() ? 0 : results.drifts.front().cells),
                       labels, rows,
-                      {{{"energy", "periods marched", "|E - E_0|/E_0", "1:2", range},
-                        {"state", "periods marched", "periodicity defect (energy norm)", "1:3", range}}},
+                      {{"energy", "periods marched", "|E - E_0|/E_0", "1:2", range},
+                       {"state", "periods marched", "periodicity defect (energy norm)", "1:3", range}},
                       5);
 }
 
@@ -190,13 +208,16 @@ Chart march_chart(const AccuracyResults& results) {
     for (std::size_t i = 0; i < labels.size(); ++i) {
         for (const auto& record : results.marches) {
             if (label(record) != labels[i]) continue;
-            rows[i] += fmt::format("{} {} {}\n", record.cells, drawn(record.tip_error), record.seconds.median);
+            rows[i] += fmt::format("{} {} {} {}\n", record.cells, drawn(record.tip_error), std::max(record.contact_error, smallest_contact_error),
+                                   record.seconds.median);
         }
     }
-    return two_panels("error-and-cost", "One period of the first nonsmooth mode", labels, rows,
-                      {{{"error of the tip displacement", "cells or elements N", "largest error / |d|", "1:2",
-                         "set yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n"},
-                        {"cost of a period", "cells or elements N", "CPU time (s)", "1:3", ""}}},
+    const std::string range = "set xrange [3:500]\nset yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n";
+    return panels_chart("error-and-cost", "One period of the first nonsmooth mode", labels, rows,
+                      {{"tip displacement", "cells or elements N", "largest error / |d|", "1:2", range},
+                       {"duration of contact", "cells or elements N", "relative error", "1:3",
+                        "set xrange [3:500]\nset yrange [5e-5:5]\nset ytics add ('0' 1e-4)\n"},
+                       {"cost of a period", "cells or elements N", "CPU time (s)", "1:4", "set xrange [3:500]\n"}},
                       5);
 }
 
@@ -210,9 +231,9 @@ Chart kernel_chart(const AccuracyResults& results) {
             rows[i] += fmt::format("{} {} {}\n", record.pattern.cells, drawn(record.error), record.seconds.median);
         }
     }
-    return two_panels("accuracy-kernels", "Kernel of S_T: error and cost", labels, rows,
-                      {{{"distance to the exact space", "cells N", "sine of the largest angle", "1:2", "set yrange [1e-17:1]\n"},
-                        {"cost", "cells N", "CPU time (s)", "1:3", ""}}},
+    return panels_chart("accuracy-kernels", "Kernel of S_T: error and cost", labels, rows,
+                      {{"distance to the exact space", "cells N", "sine of the largest angle", "1:2", "set xrange [3:300]\nset yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n"},
+                       {"cost", "cells N", "CPU time (s)", "1:3", "set xrange [3:300]\n"}},
                       2);
 }
 

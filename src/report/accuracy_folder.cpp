@@ -91,10 +91,10 @@ AccuracyFolder::AccuracyFolder(const fs::path& folder, const Scene& scene) : fol
     for (int k = 0; k < outcome_count; ++k) outcomes += fmt::format(",{}", name(static_cast<Outcome>(k)));
     open(stability_, "stability.csv",
          ("map,cells,free_steps,contact_steps,kernel_dimension,method,column,difficulty,above_least,below_greatest,runs,reported,"
-          "false_success,proved,iterations,seconds" + outcomes).c_str());
+          "false_success,certified,proved,iterations,seconds" + outcomes).c_str());
     open(causes_, "causes.csv", "method,map,cause,runs,of,what");
     open(tolerance_, "tolerance.csv", "cells,free_steps,contact_steps,method,tolerance,found,expected");
-    open(winners_, "winners.csv", "kernel_dimension,rank,method,setting,seconds_median,error,succeeded,runs");
+    open(winners_, "winners.csv", "kernel_dimension,front,rank,method,setting,seconds_median,error,succeeded,certified,runs");
     open(machine_, "machine.txt", "");
 }
 
@@ -150,10 +150,10 @@ void AccuracyFolder::stability(const StabilityRecord& record) {
     results_.stability.push_back(record);
     std::string outcomes;
     for (const int count : record.outcomes) outcomes += fmt::format(",{}", count);
-    write(stability_, fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}{}", record.map, steps(record.pattern), record.size,
+    write(stability_, fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}{}", record.map, steps(record.pattern), record.size,
                                   csv_text(record.method), record.column, csv_text(record.difficulty),
                                   csv_number(record.above_least), csv_number(record.below_greatest), record.runs,
-                                  record.reported, record.false_success, record.proved, csv_number(record.iterations),
+                                  record.reported, record.false_success, record.certified, record.proved, csv_number(record.iterations),
                                   csv_number(record.seconds), outcomes));
 }
 
@@ -171,12 +171,14 @@ void AccuracyFolder::finish() {
         if (std::find(sizes.begin(), sizes.end(), record.size) == sizes.end()) sizes.push_back(record.size);
     }
     for (const int size : sizes) {
-        const auto front = pareto_front(results_.programs, size);
-        int rank = 0;
-        for (const auto* record : front) {
-            write(winners_, fmt::format("{},{},{},{},{},{},{},{}", size, ++rank, csv_text(record->method),
-                                        csv_text(record->setting), csv_number(record->seconds.median),
-                                        csv_number(record->error), record->succeeded, record->runs));
+        for (const bool certified : {false, true}) {
+            int rank = 0;
+            for (const auto* record : pareto_front(results_.programs, size, certified)) {
+                write(winners_, fmt::format("{},{},{},{},{},{},{},{},{},{}", size, certified ? "certified" : "any", ++rank,
+                                            csv_text(record->method), csv_text(record->setting),
+                                            csv_number(record->seconds.median), csv_number(record->error),
+                                            record->succeeded, record->certified, record->runs));
+            }
         }
     }
     // method, map -> outcome counts and runs
@@ -209,19 +211,21 @@ void AccuracyFolder::finish() {
     }
 }
 
-std::vector<const ProgramRecord*> pareto_front(const std::vector<ProgramRecord>& records, int size) {
+bool all_certified(const ProgramRecord& record) { return record.runs > 0 && record.certified == record.runs; }
+
+std::vector<const ProgramRecord*> pareto_front(const std::vector<ProgramRecord>& records, int size, bool certified) {
     const auto beats = [](const ProgramRecord& a, const ProgramRecord& b) {
         return a.seconds.high < b.seconds.low &&
                std::max(a.error, rounding_error) <= std::max(b.error, rounding_error);
     };
     std::vector<const ProgramRecord*> front;
     for (const auto& record : records) {
-        if (record.size != size) continue;
-        const bool beaten = std::any_of(records.begin(), records.end(), [&](const ProgramRecord& other) {
-            return other.size == size && beats(other, record);
-        });
-        if (!beaten) front.push_back(&record);
+        if (record.size == size && !record.warm && (!certified || all_certified(record))) front.push_back(&record);
     }
+    const std::vector<const ProgramRecord*> rivals = front;
+    std::erase_if(front, [&](const auto* record) {
+        return std::any_of(rivals.begin(), rivals.end(), [&](const auto* other) { return beats(*other, *record); });
+    });
     std::stable_sort(front.begin(), front.end(),
                      [](const auto* a, const auto* b) { return a->seconds.median < b->seconds.median; });
     return front;

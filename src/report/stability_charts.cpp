@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "chart_blocks.hpp"
+#include "gnuplot.hpp"
 
 namespace nsma {
 namespace {
@@ -36,18 +37,25 @@ double shade(double value, double lo, double hi) {
     return std::clamp(std::log(value / lo) / std::log(hi / lo), 0.0, 1.0);
 }
 
+// Two digits and the SI prefix of the second: 3.1µ, 86µ, 4.2m, 590m, 1.3.
+std::string short_time(double seconds) {
+    const ScaledUnit unit = scaled_unit(std::max(seconds, 1e-6), "");
+    const double value = seconds * unit.factor;
+    return fmt::format("{:.{}f}{}", value, value < 0.995 ? 2 : value < 9.95 ? 1 : 0, unit.unit);
+}
+
 HeatMap::Cell cell(const StabilityRecord& record, Shown shown, int column, int row, double lo, double hi) {
     switch (shown) {
         case Shown::failures:
-            return {column, row, failures(record), fmt::format("{:.0f}", 100 * (1 - failures(record)))};
+            return {column, row, failures(record),
+                    fmt::format("{:.0f}{}", 100 * (1 - failures(record)), record.proved ? "" : "*")};
         case Shown::iterations: {
             const double value = std::max(record.iterations, 1.0);
             return {column, row, shade(value, lo, hi), fmt::format("{:.3g}", record.iterations)};
         }
         case Shown::seconds: {
             const double value = 1e3 * record.seconds;
-            return {column, row, shade(value, lo, hi),
-                    value >= 99.5 ? fmt::format("{:.0f}", value) : fmt::format("{:.2g}", value)};
+            return {column, row, shade(value, lo, hi), short_time(record.seconds)};
         }
     }
     return {};
@@ -75,9 +83,9 @@ Chart level_chart(const AccuracyResults& results, Shown shown, const char* name,
         lo = std::min(lo, std::max(value, 1e-6));
         hi = std::max(hi, value);
     }
-    Chart chart{name, "", heat_head, 900};
+    Chart chart{name, "", heat_head, 1150};
     chart.commands += fmt::format("set multiplot title '{}' font ',15'\n", what);
-    const int columns = 3;
+    const int columns = 2;
     const int rows = (static_cast<int>(methods.size()) + columns - 1) / columns;
     for (int k = 0; k < static_cast<int>(methods.size()); ++k) {
         HeatMap map;
@@ -94,10 +102,9 @@ Chart level_chart(const AccuracyResults& results, Shown shown, const char* name,
         const int column = k % columns;
         const bool last = row == rows - 1;
         if (!last) std::fill(map.columns.begin(), map.columns.end(), "");
-        const double height = 0.78 / rows;
-        const double top = 0.90 - row * height;
-        add_heat_map(chart, map, 0.08 + 0.31 * column, 0.37 + 0.31 * column, top - height + 0.055, top);
-        if (column == 0) chart.commands += "";
+        const double height = 0.82 / rows;
+        const double top = 0.92 - row * height;
+        add_heat_map(chart, map, 0.10 + 0.455 * column, 0.535 + 0.455 * column, top - height + 0.045, top);
     }
     chart.commands += "unset multiplot\n";
     return chart;
@@ -106,12 +113,12 @@ Chart level_chart(const AccuracyResults& results, Shown shown, const char* name,
 // One panel a difficulty: its degrees along x, methods along y.
 Chart difficulty_chart(const AccuracyResults& results, const Pattern& pattern, const std::string& name) {
     static const std::array<std::pair<const char*, const char*>, 3> maps{{
-        {"start", "distance of the start from the best orbit"},
+        {"start", "distance of the start, in radii of the energy sphere"},
         {"units", "unit of the objective and rows"},
         {"rows", "rows put back that presolve removes"}}};
     Chart chart{name, "", heat_head, 900};
     chart.commands += fmt::format(
-        "set multiplot title 'Success rate (%): replayed and within 1e-6 of the best; N = {}, r = {}, p = {}' noenhanced font ',15'\n",
+        "set multiplot title 'Success rate (%): replayed, and within 1e-6 of the best; N = {}, r = {}, p = {}' noenhanced font ',15'\n",
         pattern.cells, pattern.free_steps, pattern.contact_steps);
     const std::array<std::array<double, 4>, 3> frames{{{0.15, 0.53, 0.58, 0.90}, {0.59, 0.98, 0.58, 0.90}, {0.15, 0.53, 0.14, 0.44}}};
     for (std::size_t k = 0; k < maps.size(); ++k) {
@@ -130,6 +137,7 @@ Chart difficulty_chart(const AccuracyResults& results, const Pattern& pattern, c
             map.columns[column] = record->difficulty;
             map.cells.push_back(cell(*record, Shown::failures, record->column, place(methods, record->method), 0, 1));
         }
+        if (map.cells.empty()) continue;
         map.rows = k == 1 ? std::vector<std::string>(methods.size()) : methods;
         add_heat_map(chart, map, frames[k][0], frames[k][1], frames[k][2], frames[k][3]);
     }
@@ -210,10 +218,10 @@ std::vector<Chart> stability_charts(const AccuracyResults& results) {
     std::vector<Chart> charts;
     if (!of_map(results, "level").empty()) {
         charts.push_back(level_chart(results, Shown::failures, "stability-success",
-                                     "Success rate (%) over the level, between E_{min} and E_{max}, and the size"));
+                                     "Success rate (%): replayed, and within 1e-6 of the best (*: best known, not proved)"));
         charts.push_back(level_chart(results, Shown::iterations, "stability-iterations",
                                      "Iterations or evaluations, median"));
-        charts.push_back(level_chart(results, Shown::seconds, "stability-time", "CPU time of a run (ms), median"));
+        charts.push_back(level_chart(results, Shown::seconds, "stability-time", "CPU time of a run (s; m: 1e-3, µ: 1e-6), median"));
     }
     std::vector<Pattern> patterns;
     for (const auto& record : results.stability) {

@@ -11,12 +11,14 @@
 namespace nsma {
 namespace {
 
-// Levels of the programs, as shares of [E_min, E_max].
-constexpr double level_shares[] = {0.05, 0.3, 0.8};
+// Levels of the programs: at these the best objective is proved at every size, at the first two by
+// the Lagrangian (no amplitude is zero), at the last by products (all but two are zero).
+constexpr double levels_of_least[] = {1.1, 1.3};    // times E_min
+constexpr double levels_of_greatest[] = {0.8};      // times E_max
 // Beyond this size a derivative-free method only meets its limit.
 constexpr int derivative_free_limit = 32;
 constexpr int quick_derivative_free_limit = 2;
-constexpr double slow_run = 0.5;  // seconds; one run of such work is enough
+constexpr double slow_run = 0.2;  // seconds; such work is not repeated
 
 bool derivative_free(const ProgramMethod& method) {
     return method.kind == ProgramMethod::Kind::nlopt &&
@@ -28,32 +30,35 @@ ProgramRecord measure(const ProgramMethod& method, const std::vector<ProgramCase
     ProgramRecord record;
     record.method = method.name;
     record.setting = method.setting();
+    record.warm = method.warm;
     record.pattern = cases.front().problem.kernel.pattern;
     record.size = cases.front().problem.kernel.dimension();
     record.proved = true;
-    std::vector<double> seconds;
+    std::vector<double> seconds;  // of a run, the mean over levels and starts; one for each repeat
     std::vector<double> iterations;
     const bool own_start = method.warm || method.whole();
-    for (const auto& one : cases) {
-        record.proved = record.proved && one.proved;
-        for (int start = 0; start < (own_start ? 1 : sizes.starts); ++start) {
-            const Eigen::VectorXd x = one.program.point(one.points.start(start).value());
-            for (int repeat = 0; repeat < sizes.repeats; ++repeat) {
-                const Trial trial = runner.run(one, one.program.program, x);
-                seconds.push_back(trial.seconds);
-                if (repeat == 0) {
-                    ++record.runs;
-                    if (trial.reported) ++record.reported;
-                    if (trial.outcome == Outcome::success) ++record.succeeded;
-                    if (trial.certified) ++record.certified;
-                    iterations.push_back(trial.iterations);
-                    record.worst_gap = std::max(record.worst_gap, trial.gap);
-                    record.worst_violation = std::max(record.worst_violation, trial.violation);
-                    record.error = std::max(record.error, trial.error());
-                }
-                if (trial.seconds > slow_run) break;
+    for (const auto& one : cases) record.proved = record.proved && one.proved;
+    for (int repeat = 0; repeat < sizes.repeats; ++repeat) {
+        double total = 0;
+        int runs = 0;
+        for (const auto& one : cases) {
+            for (int start = 0; start < (own_start ? 1 : sizes.starts); ++start) {
+                const Trial trial = runner.run(one, one.program.program, one.program.point(one.points.start(start).value()));
+                total += trial.seconds;
+                ++runs;
+                if (repeat > 0) continue;
+                ++record.runs;
+                if (trial.reported) ++record.reported;
+                if (trial.outcome == Outcome::success) ++record.succeeded;
+                if (trial.certified) ++record.certified;
+                iterations.push_back(trial.iterations);
+                record.worst_gap = std::max(record.worst_gap, trial.gap);
+                record.worst_violation = std::max(record.worst_violation, trial.violation);
+                record.error = std::max(record.error, trial.error());
             }
         }
+        seconds.push_back(total / runs);
+        if (seconds.back() > slow_run) break;
     }
     record.seconds = spread(seconds);
     record.iterations = spread(iterations).median;
@@ -64,7 +69,7 @@ ProgramRecord measure(const ProgramMethod& method, const std::vector<ProgramCase
 
 AccuracySizes accuracy_sizes(const AccuracyOptions& options) {
     if (options.quick) return {{2, 8}, {2, 8}, {5, 10, 20}, {2, 8}, {10, 100}, 10, 1, 2};
-    return {{2, 8, 32},            {2, 4, 8, 16},         {5, 10, 20, 40, 80, 160, 320},
+    return {{2, 8, 32, 128},       {2, 4, 8, 16, 32},     {5, 10, 20, 40, 80, 160, 320},
             {2, 8, 32, 64},        {10, 1'000, 100'000},  20,
             5,                     3};
 }
@@ -88,9 +93,12 @@ void study_programs(AccuracyRun& run) {
         const double least = problem.interval.least.value();
         const double greatest = problem.interval.greatest.value();
         std::vector<ProgramCase> cases;
-        cases.reserve(std::size(level_shares));
-        for (const double share : level_shares) {
-            cases.emplace_back(run.scene.bar, problem, run.scene.objective, least + share * (greatest - least));
+        cases.reserve(std::size(levels_of_least) + std::size(levels_of_greatest));
+        for (const double factor : levels_of_least) {
+            cases.emplace_back(run.scene.bar, problem, run.scene.objective, factor * least);
+        }
+        for (const double factor : levels_of_greatest) {
+            cases.emplace_back(run.scene.bar, problem, run.scene.objective, factor * greatest);
         }
         run.step();
         for (const auto& method : methods) {

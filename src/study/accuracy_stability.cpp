@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <random>
 
 #include "accuracy_parts.hpp"
@@ -11,10 +12,14 @@ namespace nsma {
 namespace {
 
 constexpr double run_limit = 3.0;  // seconds a run of the maps
-// The pattern of the start, unit and row maps beside a first-mode one: several local optima.
-constexpr Pattern hard_pattern{6, 23, 1};
-constexpr double hard_level = 1.5;  // in E_min, as in the report of its local optima
-constexpr double easy_level = 1.35;
+// The patterns of the start, unit and row maps beside a first-mode one, for a gap > 0, with E/E_g:
+// unknowns of both signs; local optima (144 and 192) at a level through a vertex. Both proved.
+struct HardProgram {
+    Pattern pattern;
+    double level;
+};
+constexpr HardProgram hard_programs[] = {{{6, 23, 1}, 1.5}, {{6, 18, 6}, 36.0}};
+constexpr double easy_level = 1.35;  // in E_min
 constexpr int easy_size = 8;
 
 std::string text(const char* format, double value) {
@@ -32,8 +37,8 @@ struct Place {
 std::vector<Place> places(bool quick) {
     if (quick) return {{true, 1e-8, false}, {true, 0.5, true}, {false, 1e-8, false}};
     return {{true, 1e-12, false}, {true, 1e-9, false}, {true, 1e-6, false},  {true, 1e-3, false},
-            {true, 0.1, true},    {true, 0.5, true},   {true, 0.9, true},    {false, 1e-3, false},
-            {false, 1e-6, false}, {false, 1e-9, false}, {false, 1e-12, false}};
+            {true, 0.1, true},    {true, 0.3, true},   {true, 0.5, true},    {true, 0.9, true},
+            {false, 1e-3, false}, {false, 1e-6, false}, {false, 1e-9, false}, {false, 1e-12, false}};
 }
 std::string label(const Place& place) {
     if (place.middle) return text("%g of the way", place.distance);
@@ -63,6 +68,7 @@ public:
         ++record_.runs;
         if (trial.reported) ++record_.reported;
         if (trial.reported && trial.outcome != Outcome::success) ++record_.false_success;
+        if (trial.certified) ++record_.certified;
         ++record_.outcomes.at(static_cast<std::size_t>(trial.outcome));
         iterations_.push_back(trial.iterations);
         seconds_.push_back(trial.seconds);
@@ -79,6 +85,12 @@ private:
     std::vector<double> seconds_;
 };
 
+Eigen::VectorXd random_unit(Eigen::Index size, std::mt19937_64& generator) {
+    Eigen::VectorXd direction(size);
+    for (auto& value : direction) value = static_cast<double>(generator() >> 11) * 0x1.0p-52 - 1.0;
+    return direction.normalized();
+}
+
 void level_map(AccuracyRun& run) {
     const Bar& bar = run.scene.bar;
     const auto columns = places(run.quick);
@@ -92,23 +104,19 @@ void level_map(AccuracyRun& run) {
                 if (!run.go_on()) return;
                 MethodRunner runner(method, run_limit);
                 Cell cell("level", on, method, static_cast<int>(column), label(columns[column]));
+                // The admissible point of a segment, then points of the level in random directions.
+                std::mt19937_64 generator(1);
                 const int starts = method.whole() ? 1 : run.sizes.starts;
                 for (int start = 0; start < starts; ++start) {
-                    if (const auto gamma = on.points.start(start)) {
-                        cell.add(runner.run(on, on.program.program, on.program.point(*gamma)));
-                    }
+                    const Eigen::VectorXd x = start == 0 ? on.program.point(on.points.start(0).value())
+                                                         : random_unit(on.best_x.size(), generator);
+                    cell.add(runner.run(on, on.program.program, x));
                 }
                 run.sink.stability(cell.record());
             }
             run.step();
         }
     }
-}
-
-Eigen::VectorXd random_unit(Eigen::Index size, std::mt19937_64& generator) {
-    Eigen::VectorXd direction(size);
-    for (auto& value : direction) value = static_cast<double>(generator() >> 11) * 0x1.0p-52 - 1.0;
-    return direction.normalized();
 }
 
 void start_map(AccuracyRun& run, const ProgramCase& on, int starts) {
@@ -151,18 +159,20 @@ void posed_map(AccuracyRun& run, const char* map, const ProgramCase& on, const s
 
 void study_stability(AccuracyRun& run) {
     const Bar& bar = run.scene.bar;
-    run.expect(static_cast<long>(run.sizes.maps.size() * places(run.quick).size()) + 6);
+    const long patterns = bar.gap_sign() < 0 || run.quick ? 1 : 1 + static_cast<long>(std::size(hard_programs));
+    run.expect(static_cast<long>(run.sizes.maps.size() * places(run.quick).size()) + 3 * patterns);
     level_map(run);
-    std::vector<Pattern> patterns{accuracy_pattern(easy_size, bar.gap_sign())};
-    if (bar.gap_sign() > 0 && !run.quick) patterns.push_back(hard_pattern);
-    for (const Pattern& pattern : patterns) {
+    const auto study = [&](const Pattern& pattern, std::optional<double> level) {
         if (!run.go_on()) return;
         const PatternProblem problem = pattern_problem(pattern, bar.gap_sign());
-        const ProgramCase on(bar, problem, run.scene.objective, (pattern == hard_pattern ? hard_level : easy_level) * problem.interval.least.value());
+        const ProgramCase on(bar, problem, run.scene.objective, level.value_or(easy_level * problem.interval.least.value()));
         start_map(run, on, run.quick ? 2 : 8);
         posed_map(run, "units", on, scaled_programs(on.program.program, run.quick));
         posed_map(run, "rows", on, redundant_programs(on));
-    }
+    };
+    study(accuracy_pattern(easy_size, bar.gap_sign()), std::nullopt);
+    if (bar.gap_sign() < 0 || run.quick) return;
+    for (const auto& hard : hard_programs) study(hard.pattern, hard.level);
 }
 
 }  // namespace nsma

@@ -9,6 +9,7 @@
 #include "nsma/program/admissible_set.hpp"
 #include "nsma/program/level_points.hpp"
 #include "nsma/program/orbit_program.hpp"
+#include "nsma/program/orbit_solver.hpp"
 #include "textbook.hpp"
 
 namespace {
@@ -198,6 +199,44 @@ TEST(Polish, OrbitProgramsDescendToKktPoints) {
             bound = std::max(bound, polished.lower_bound);
         }
         EXPECT_LE(bound, best * (1 + 1e-9));
+    }
+}
+
+TEST(Polish, LeavesASaddle) {
+    // Amplitudes (a, b, a, 0): stationary by symmetry; two neighbours are better.
+    const auto problem = nsma::pattern_problem({10, 24, 8}, 1);
+    const double level = 0.8 * *problem.interval.greatest;
+    const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, nsma::Objective::least_shock, level,
+                                             *problem.interval.least);
+    const double a = (4 - std::sqrt(16 - 24 * (1 - 0.8))) / 12;  // 2 a^2 + (1 - 2 a)^2 = 0.8
+    VectorXd gamma = VectorXd::Zero(4);
+    for (const auto& vertex : problem.set.vertices) {
+        Eigen::Index column = 0;
+        vertex.cwiseAbs().maxCoeff(&column);
+        if (column < 3) gamma += (column == 1 ? 1 - 2 * a : a) * vertex;
+    }
+    const auto polished = polish(program.program, program.point(gamma));
+    EXPECT_TRUE(polished.stationary);
+    EXPECT_NEAR(polished.objective * program.objective_unit, 2 * 10 * 8 * (3 * 0.8 - 1), 1e-9 * 224);  // conic_bound_test
+}
+
+TEST(Polish, ComesToTheOptimumCloseToTheLeastEnergy) {
+    // The sphere cuts COND2 in a small circle, on which the objective shows no progress beyond its rounding.
+    for (const int size : {8, 16, 32}) {
+        for (const int sign : {1, -1}) {
+            const nsma::Pattern pattern = sign > 0 ? nsma::Pattern{5 * size / 2, 6 * size, 2 * size}
+                                                   : nsma::Pattern{5 * size / 2, 4 * size, 3 * size};
+            const auto problem = nsma::pattern_problem(pattern, sign);
+            for (const double above : {1e-10, 1e-9, 1e-8, 1e-6, 1e-3}) {
+                const double level = *problem.interval.least * (1 + above);
+                const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, nsma::Objective::least_shock,
+                                                         level, *problem.interval.least);
+                const nsma::LevelPoints points(problem.set, level);
+                const auto polished = polish(program.program, program.point(*points.start(0)));
+                EXPECT_TRUE(polished.stationary) << size << ' ' << sign << ' ' << above;
+                EXPECT_GE(polished.lower_bound, polished.objective * (1 - 1e-6)) << size << ' ' << sign << ' ' << above;
+            }
+        }
     }
 }
 

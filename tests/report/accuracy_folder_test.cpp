@@ -81,7 +81,7 @@ TEST_F(AccuracyFolderTest, WritesEveryTableAndDrawsEveryChart) {
     EXPECT_EQ(contents("scene.toml"), scene_.text);
     EXPECT_NE(contents("drift.csv").find("5,\"FE, \"\"quoted\"\"\",\"a, b\",10,0.001,0.01,0.1"), std::string::npos);
     EXPECT_NE(contents("causes.csv").find("SLSQP,level,off-level,1,2,"), std::string::npos);
-    EXPECT_NE(contents("winners.csv").find("2,1,SLSQP"), std::string::npos);
+    EXPECT_NE(contents("winners.csv").find("2,any,1,SLSQP"), std::string::npos);
     EXPECT_EQ(contents("winners.csv").find("Ipopt"), std::string::npos);
     EXPECT_NE(contents("machine.txt").find("Ipopt: "), std::string::npos);
     for (const nsma::Chart& chart : nsma::accuracy_charts(folder.results())) {
@@ -116,6 +116,17 @@ TEST(ParetoFront, KeepsWhatNothingBeats) {
     for (const auto* record : nsma::pareto_front(records, 8)) names.push_back(record->method);
     EXPECT_EQ(names, (std::vector<std::string>{"fast and rough", "exact", "as exact within rounding and noise"}));
     EXPECT_TRUE(nsma::pareto_front(records, 32).empty());
+}
+
+TEST(ParetoFront, OfCertifiedAnswersLeavesOutTheOthers) {
+    std::vector<ProgramRecord> records{program("fast", 8, 1e-5, 1e-15), program("proved", 8, 1e-3, 1e-15),
+                                       program("proved in part", 8, 1e-4, 1e-15), program("proved slowly", 8, 1e-2, 1e-15)};
+    records[1].certified = records[3].certified = 3;
+    records[2].certified = 2;
+    const auto front = nsma::pareto_front(records, 8, true);
+    ASSERT_EQ(front.size(), 1U);
+    EXPECT_EQ(front.front()->method, "proved");
+    EXPECT_EQ(nsma::pareto_front(records, 8).front()->method, "fast");
 }
 
 TEST(AccuracyCharts, NothingToShowIsNoChart) { EXPECT_TRUE(nsma::accuracy_charts({}).empty()); }

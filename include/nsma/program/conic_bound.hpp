@@ -36,4 +36,9 @@ struct ConicBound {
 [[nodiscard]] ConicBound conic_bound(const Program& program, double target,
                                      const ConicBoundOptions& options = {});
 
+/// Lower bound of the same form without iterations, in the program's scale: N takes off every
+/// positive product of two bounded unknowns, and mu and nu follow from an eigenvalue. Tight where
+/// the best point lies on an edge of the bounds. -infinity as above.
+[[nodiscard]] double product_bound(const Program& program);
+
 }  // namespace nsma

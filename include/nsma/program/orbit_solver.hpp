@@ -33,7 +33,9 @@ enum class SolverChoice {
     ipopt,
     nlopt,
     both,  ///< each against the other
-    proof  ///< until an answer is proved the best: polished segment point, NLopt, then both
+    /// Until an answer is proved the best: a polished segment point (above 48 unknowns Ipopt from
+    /// there), NLopt, then both.
+    proof
 };
 
 struct OrbitSolverOptions {

@@ -67,9 +67,14 @@ private:
     Table programs_, kernels_, marching_, drift_, stability_, causes_, tolerance_, winners_, machine_;
 };
 
-/// Of a size's records those that no other beats, by increasing time: one beats another when it
-/// is faster beyond the quartiles of both and its error is not larger, rounding (1e-14) aside.
-[[nodiscard]] std::vector<const ProgramRecord*> pareto_front(const std::vector<ProgramRecord>& records, int size);
+/// Every answer of the record was proved the best by the method itself.
+[[nodiscard]] bool all_certified(const ProgramRecord& record);
+
+/// Of a size's records with a cold start, or of those whose answers are all certified, the ones
+/// that no other beats, by increasing time: one beats another when it is faster beyond the quartiles of both
+/// and its error is not larger, rounding (1e-14) aside.
+[[nodiscard]] std::vector<const ProgramRecord*> pareto_front(const std::vector<ProgramRecord>& records, int size,
+                                                             bool certified = false);
 
 /// CPU, compiler, build options and library versions, one line each.
 [[nodiscard]] std::string machine_text();

@@ -33,12 +33,14 @@ struct Spread {
 /// Throws std::invalid_argument on no value.
 [[nodiscard]] Spread spread(std::vector<double> values);
 
-/// One method with one setting on the programs of one size. CPU seconds a run.
+/// One method with one setting on the programs of one size. CPU seconds a run: the mean over
+/// levels and starts, of which the repeats have the spread.
 struct ProgramRecord {
     Pattern pattern;
     int size = 0;  ///< m
     std::string method;
     std::string setting;
+    bool warm = false;  ///< started at the optimum of another level, whose cost is not counted
     int runs = 0;
     int reported = 0;   ///< the library claims success
     int succeeded = 0;  ///< Outcome::success
@@ -97,6 +99,7 @@ struct StabilityRecord {
     int runs = 0;
     int reported = 0;
     int false_success = 0;    ///< reported, but not Outcome::success
+    int certified = 0;        ///< proved the best by the method's own bound
     std::array<int, outcome_count> outcomes{};
     bool proved = false;
     double iterations = 0;    ///< median
