@@ -6,6 +6,7 @@
 #include "nsma/program/conic_bound.hpp"
 #include "nsma/program/lifted_program.hpp"
 #include "nsma/program/restore.hpp"
+#include "sphere_minimiser.hpp"
 
 namespace nsma {
 namespace {
@@ -45,6 +46,9 @@ Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Patt
 std::optional<Best> Search::run() {
     const bool until_proved = options_.solvers == SolverChoice::proof;
     if (until_proved) {
+        if (const auto x = sphere_minimiser(program_.program)) {
+            if (Best free = found(polish(program_.program, *x), "sphere"); free.optimality.global) return free;
+        }
         const auto begin = start(0);
         if (begin && program_.program.variables() > segment_limit && attempt(*begin, "ipopt", 0, ipopt_) &&
             ipopt_.optimality.global) {

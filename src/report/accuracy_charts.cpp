@@ -174,7 +174,7 @@ Chart panels_chart(const std::string& name, const std::string& title, const std:
             chart.commands += fmt::format("{}'{}.dat' index '{}' using {} with {}", i == 0 ? "" : ", \\\n    ", name, labels[i],
                                           panels[k].columns, line_style(i));
         }
-        chart.commands += "\nset autoscale\n";
+        chart.commands += "\nset autoscale\nset ytics autofreq\n";
     }
     chart.commands += legend(entries, 0.0, 0.27, legend_rows) + "unset multiplot\n";
     return chart;

@@ -8,7 +8,7 @@
 #include "nsma/program/level_points.hpp"
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/orbit_solver.hpp"
-#include "textbook.hpp"
+#include "nsma/program/polish.hpp"
 
 namespace {
 
@@ -66,6 +66,24 @@ TEST(ConicBound, ClosesTheGapThatTheLagrangianLeaves) {
     EXPECT_LE(bound.value, target * (1 + 1e-9));
     EXPECT_GE(bound.value, target * (1 - 1e-6));  // what counts as proved
     EXPECT_GE(bound.nodes, 1);
+}
+
+TEST(OrbitSolver, UntilProvedTakesTheLeastPointOfTheSphereWhereItIsAdmissible) {
+    for (const int size : {4, 8, 32}) {
+        const Simplex simplex(size, 1.2 / size);  // 1.2 E_min: every amplitude is positive
+        nsma::OrbitSolverOptions options;
+        options.solvers = nsma::SolverChoice::proof;
+        nsma::OrbitSolver solver(options);
+        const auto answer = solver.solve(nsma::Bar{}, simplex.problem, {.level = simplex.level, .reference = {}});
+        EXPECT_EQ(answer.method, "sphere");
+        ASSERT_TRUE(answer.optimality && answer.objective_value);
+        EXPECT_TRUE(answer.optimality->global);
+        const nsma::LevelPoints points(simplex.problem.set, simplex.level);
+        for (int k = 0; k < 6; ++k) {
+            const auto polished = nsma::polish(simplex.program.program, simplex.program.point(points.start(k).value()));
+            EXPECT_LE(*answer.objective_value, polished.objective * simplex.program.objective_unit * (1 + 1e-12)) << size << ' ' << k;
+        }
+    }
 }
 
 TEST(OrbitSolver, UntilProvedIsTheBestAtEverySize) {

@@ -33,8 +33,8 @@ enum class SolverChoice {
     ipopt,
     nlopt,
     both,  ///< each against the other
-    /// Until an answer is proved the best: a polished segment point (above 48 unknowns Ipopt from
-    /// there), NLopt, then both.
+    /// Until an answer is proved the best: the least point of the sphere where it is admissible, a
+    /// polished segment point (above 48 unknowns Ipopt from there), NLopt, then both.
     proof
 };
 
