@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 #include "nsma/program/polish.hpp"
 #include "nsma/program/relaxed_solver.hpp"
@@ -183,9 +184,18 @@ void OptimumAnalysis::find_multipliers() {
     if (!second_order(held)) refusal = "the optimum is not isolated: orbits of the same objective may lie beside it";
 }
 
-// One Newton step along the directions that clearly curve. A flat direction stops polish() where
-// the objective no longer shows its progress, some 1e-8 away in the others.
+// Onto the active rows, then one Newton step along the directions that clearly curve. A flat
+// direction, or a row of next to no multiplier, stops polish() where the objective no longer shows
+// its progress, some 1e-8 away.
 void OptimumAnalysis::newton_step() {
+    const Eigen::MatrixXd rows = stacked(stacked(equalities_, normals_), sphere_.transpose());
+    Eigen::VectorXd defect(rows.rows());
+    const auto contact = equalities_.rows();
+    defect.head(contact) = form.program.equality_values - equalities_ * x;
+    defect.segment(contact, normals_.rows()) = form.program.inequality_values(active) - normals_ * x;
+    defect[defect.size() - 1] = -0.5 * form.program.sphere_residual(x);
+    const Eigen::VectorXd cleaned = x + rows.completeOrthogonalDecomposition().solve(defect);
+    if (form.program.violation(cleaned) <= magnitude_.zero) set_point(cleaned);
     std::vector<Eigen::Index> all(active.size());
     std::iota(all.begin(), all.end(), Eigen::Index{0});
     const Eigen::MatrixXd flat = held_flat(all, true);

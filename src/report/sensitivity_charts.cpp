@@ -127,6 +127,7 @@ Chart binding_chart(const Scene& scene, const OptimumRecord& optimum) {
                                            optimum.level.value_or(energy_ratio(optimum.orbit)));
         elasticities += fmt::format("{}{} {:+.3g}", elasticities.empty() ? "elasticity of the objective: " : ", ", words, relative);
     }
+    const bool narrow = 8 * pattern.contact_steps < pattern.period_steps();  // for the word
     const double lowest = tip.minCoeff();
     const double head = 0.14 * std::max(wall - lowest, 1e-9);
     const std::string title =
@@ -146,7 +147,7 @@ set yrange [{lowest}:{top}]
 set object 1 rectangle from graph 0, first {wall} to graph 1, graph 1 behind fillcolor rgb '#dddddd' fillstyle solid noborder
 set object 2 rectangle from first {free}, graph 0 to first {period}, first {wall} behind fillcolor rgb '#f2f2f2' fillstyle solid noborder
 set label 1 'wall' at graph 0.5, first {label} center textcolor rgb '#333333'
-set label 2 'contact' at first {middle}, graph 0.08 center textcolor rgb '#555555'
+set label 2 'contact' at first {contact_at}, graph 0.06 {contact_side} textcolor rgb '#555555'
 unset key
 plot {wall} with lines lw 1 lc rgb '#333333', 'binding.dat' index 0 using 1:2 with lines lw 2 lc rgb '#000000', \
      'binding.dat' index 3 using 1:2 with points pt 7 ps 0.9*mark lc rgb '#d55e00'
@@ -171,7 +172,8 @@ unset multiplot
         fmt::arg("axes", axes), fmt::arg("period", period), fmt::arg("title", gnuplot_text(title)),
         fmt::arg("lowest", lowest - 0.5 * head), fmt::arg("top", wall + head), fmt::arg("wall", wall),
         fmt::arg("label", wall + 0.5 * head), fmt::arg("free", pattern.free_steps / cells),
-        fmt::arg("middle", (pattern.free_steps + 0.5 * pattern.contact_steps) / cells),
+        fmt::arg("contact_at", narrow ? period : (pattern.free_steps + 0.5 * pattern.contact_steps) / cells),
+        fmt::arg("contact_side", narrow ? "right" : "center"),
         fmt::arg("highest", highest > 0 ? 1.15 * highest : 1.0), fmt::arg("width", 0.7 / cells),
         fmt::arg("elasticities", gnuplot_text(elasticities)),
         fmt::arg("flight_words", wall_decides ? "COND1: saved per penetration of 1 % of |d| at this step"
@@ -252,12 +254,13 @@ unset label 1
 set lmargin screen 0.59
 set rmargin screen 0.98
 set title 'greatest energy E_{{max}}/E_g'
+set xlabel 'amount allowed: length/|d|, tension/(YS|d|/L)'
 plot {greatest}
 set lmargin screen 0.09
 set rmargin screen 0.48
 set tmargin screen 0.43
 set bmargin screen 0.13
-set xlabel 'amount allowed: length/|d|, tension/(YS|d|/L)'
+set yrange [0:1.05]
 set title {objective}
 plot {objectives}
 unset title
@@ -265,7 +268,7 @@ unset xlabel
 set border 0
 unset xtics
 unset ytics
-set key at screen 0.58, screen 0.40 left top vertical maxrows 7 Left reverse samplen 4
+set key at screen 0.58, screen 0.38 left top vertical maxrows 7 Left reverse samplen 4
 plot [0:1] [0:1] {legend}
 unset multiplot
 )",
