@@ -8,7 +8,7 @@ usage: sh problems/run.sh
 From a bare Debian 12 machine to the first nonsmooth mode of the bar:
   1. installs the packages that are missing (sudo only if not root);
   2. builds the program: build/release/nsma;
-  3. sweeps problems/first-mode.toml: table and charts in out/first-mode/.
+  3. sweeps problems/first-mode.toml, every orbit by both solvers: table and charts in out/first-mode/.
 It may be run again at any time; what is done already is not done twice.
 END
 }
@@ -30,7 +30,7 @@ cmake --preset release
 cmake --build --preset release --target nsma_app
 
 say "sweeping problems/first-mode.toml"
-build/release/nsma sweep problems/first-mode.toml --out out/first-mode
+build/release/nsma sweep problems/first-mode.toml --solver both --out out/first-mode
 
 say "results in $top/out/first-mode:"
 ls -1 out/first-mode

@@ -75,9 +75,9 @@ void add_quiet(CLI::App& command, bool& quiet) {
 
 // Options that a user tunes a solver with; the names of the choices as the user types them.
 struct SolverWords {
-    std::string solver = "both";
+    std::string solver = "proof";
     void add(CLI::App& command, OrbitSolverOptions& options) {
-        command.add_option("--solver", solver, "ipopt, nlopt, both against each other (default), or proof: no cross-check where the polished answer is proved the best")
+        command.add_option("--solver", solver, "proof: both against each other where no cheaper answer is proved the best (default); both: always; ipopt; nlopt")
             ->check(CLI::Validator(
                 [](const std::string& text) -> std::string {
                     if (text == "ipopt" || text == "nlopt" || text == "both" || text == "proof") return {};

@@ -27,6 +27,7 @@ void draw(const std::string& folder) {
 // What decides an answer besides scene and software.
 std::string options_text(const OrbitSolverOptions& options) {
     const char* solvers = options.solvers == SolverChoice::both    ? "both"
+                          : options.solvers == SolverChoice::proof ? "proof"
                           : options.solvers == SolverChoice::ipopt ? "ipopt"
                                                                    : "nlopt";
     return fmt::format("solver {}, starts {}, bound nodes {}, tolerance {}", solvers, options.starts,

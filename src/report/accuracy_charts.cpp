@@ -52,8 +52,8 @@ std::string program_label(const ProgramRecord& record) {
 
 // The shape tells the method; filled marks are of certified answers only.
 std::string program_style(const std::string& label, bool certified) {
-    if (label == "default") return "points pt 3 ps 2.2*mark lw 2.5 lc rgb '#000000'";
-    if (label == "proof first") return "points pt 1 ps 2.2*mark lw 2.5 lc rgb '#000000'";
+    if (label == "both solvers") return "points pt 3 ps 2.2*mark lw 2.5 lc rgb '#000000'";
+    if (label == "default") return "points pt 1 ps 2.2*mark lw 2.5 lc rgb '#000000'";
     if (label == "segment") return "points pt 2 ps 1.7*mark lw 2.5 lc rgb '#d55e00'";
     struct Shape {
         const char* label;

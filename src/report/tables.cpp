@@ -179,7 +179,7 @@ std::string summary_table(const SweepSummary& summary) {
     count("energy levels asked", summary.levels);
     count("  solved", summary.solved);
     count("    proved the best at their level", summary.global);
-    count("    closed form", summary.closed_form);
+    count("    closed form, or proved alone", summary.closed_form);
     count("    solvers agree", summary.agreed);
     count("    solvers at different optima", summary.disagreed);
     count("    one solver failed", summary.one_failed);

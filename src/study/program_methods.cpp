@@ -93,7 +93,7 @@ double cpu_seconds() {
 }
 
 std::string ProgramMethod::setting() const {
-    if (whole()) return kind == Kind::default_path ? "defaults" : "no cross-check";
+    if (whole()) return kind == Kind::both ? "cross-checked" : "until proved";
     if (kind == Kind::segment) return "polish";
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "tol %.0e", tolerance);
@@ -103,8 +103,8 @@ std::string ProgramMethod::setting() const {
 std::vector<ProgramMethod> program_methods(bool quick) {
     using Kind = ProgramMethod::Kind;
     std::vector<ProgramMethod> methods;
-    methods.push_back({Kind::default_path, NloptMethod::slsqp, "default", 0, true, false});
-    methods.push_back({Kind::proof, NloptMethod::slsqp, "proof first", 0, true, false});
+    methods.push_back({Kind::both, NloptMethod::slsqp, "both solvers", 0, true, false});
+    methods.push_back({Kind::proof, NloptMethod::slsqp, "default", 0, true, false});
     methods.push_back({Kind::segment, NloptMethod::slsqp, "segment", 0, true, false});
     const std::vector<double> tolerances = quick ? std::vector{1e-4, 1e-10} : std::vector{1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
     for (const double tolerance : tolerances) {
@@ -135,8 +135,8 @@ std::vector<ProgramMethod> program_methods(bool quick) {
 
 std::vector<ProgramMethod> mapped_methods() {
     using Kind = ProgramMethod::Kind;
-    return {{Kind::default_path, NloptMethod::slsqp, "default", 0, true, false},
-            {Kind::proof, NloptMethod::slsqp, "proof first", 0, true, false},
+    return {{Kind::both, NloptMethod::slsqp, "both solvers", 0, true, false},
+            {Kind::proof, NloptMethod::slsqp, "default", 0, true, false},
             {Kind::segment, NloptMethod::slsqp, "segment", 0, true, false},
             {Kind::ipopt, NloptMethod::slsqp, "Ipopt raw", 1e-10, false, false},
             {Kind::ipopt, NloptMethod::slsqp, "Ipopt", 1e-10, true, false},
@@ -218,7 +218,7 @@ MethodRunner::MethodRunner(const ProgramMethod& method, double time_limit) : met
     options_.max_iterations =
         method.kind == ProgramMethod::Kind::ipopt ? ipopt_iterations : nlopt_evaluations / 10;
     OrbitSolverOptions whole;
-    if (method.kind == ProgramMethod::Kind::proof) whole.solvers = SolverChoice::proof;
+    whole.solvers = method.kind == ProgramMethod::Kind::both ? SolverChoice::both : SolverChoice::proof;
     if (method.whole()) orbit_solver_ = std::make_unique<OrbitSolver>(whole);
     if (method.kind == ProgramMethod::Kind::ipopt) ipopt_ = std::make_unique<IpoptSolver>(options_);
 }

@@ -164,7 +164,7 @@ void expect_fields(const json& orbit) {
 }
 
 TEST_F(Program, OrbitJsonOfAnAdmissibleLevel) {
-    const Result result = run({"orbit", scene_, "--free", "16", "--contact", "4", "--energy", "12", "--json"});
+    const Result result = run({"orbit", scene_, "--free", "16", "--contact", "4", "--energy", "12", "--solver", "both", "--json"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err, "");
     const json orbit = parsed(result);

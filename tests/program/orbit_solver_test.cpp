@@ -31,9 +31,10 @@ Bar bar_with_gap(double gap) {
     return bar;
 }
 
-/// The defaults; with sanitizers few relaxations, which are dense linear algebra and 20 times slower there.
+/// Both solvers, what they agree about being tested; with sanitizers few relaxations, which are dense linear algebra and 20 times slower there.
 OrbitSolverOptions usual() {
     OrbitSolverOptions options;
+    options.solvers = SolverChoice::both;
 #ifdef __SANITIZE_ADDRESS__
     options.bound_nodes = 1;
 #endif
@@ -43,6 +44,7 @@ OrbitSolverOptions usual() {
 /// For tests of many levels, where the bound on the objective is not looked at.
 OrbitSolverOptions unbounded() {
     OrbitSolverOptions options;
+    options.solvers = SolverChoice::both;
     options.bound_nodes = 0;
     return options;
 }

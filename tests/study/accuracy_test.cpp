@@ -68,11 +68,11 @@ TEST(Accuracy, QuickRunEndToEnd) {
         methods.insert(record.method);
         EXPECT_TRUE(record.proved) << record.size;  // every reference is certified
         EXPECT_GT(record.runs, 0);
-        if (record.method != "default") continue;
+        if (record.method != "both solvers") continue;
         EXPECT_EQ(record.succeeded, record.runs);
         EXPECT_LE(record.error, 1e-9);
     }
-    EXPECT_EQ(methods, (std::set<std::string>{"default", "proof first", "segment", "Ipopt", "Ipopt lifted", "SLSQP", "AUGLAG+LBFGS",
+    EXPECT_EQ(methods, (std::set<std::string>{"both solvers", "default", "segment", "Ipopt", "Ipopt lifted", "SLSQP", "AUGLAG+LBFGS",
                                               "AUGLAG+SLSQP", "COBYLA", "ISRES"}));
     for (const auto& record : seen.kernels) {
         // Divide and conquer loses vectors of repeated singular values in some versions of Eigen.
@@ -100,7 +100,7 @@ TEST(Accuracy, QuickRunEndToEnd) {
             EXPECT_TRUE(record.proved) << record.size << ' ' << record.difficulty;
         }
         // Where an answer is proved to exist the default path finds it.
-        if (record.method == "default" || record.method == "proof first") {
+        if (record.method == "both solvers" || record.method == "default") {
             EXPECT_EQ(record.outcomes[0], record.runs) << record.map << ' ' << record.difficulty;
         }
         EXPECT_LE(record.false_success, record.reported);

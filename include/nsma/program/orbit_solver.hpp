@@ -39,7 +39,7 @@ enum class SolverChoice {
 };
 
 struct OrbitSolverOptions {
-    SolverChoice solvers = SolverChoice::both;
+    SolverChoice solvers = SolverChoice::proof;
     /// Starts per solver while the optimum is not proved, >= 1; above 64 unknowns a quarter of them.
     int starts = 8;
     double agreement_tolerance = 1e-6;  ///< relative difference of objectives that still agree

@@ -14,13 +14,13 @@ namespace nsma {
 /// One way to solve the program of a pattern at a level.
 struct ProgramMethod {
     enum class Kind {
-        default_path,  ///< OrbitSolver with its defaults
+        both,          ///< OrbitSolver, each solver against the other
         proof,         ///< OrbitSolver until an answer is proved, without a cross-check
         segment,       ///< the admissible point of a segment, polished; no solver
         ipopt,
         nlopt
     };
-    Kind kind = Kind::default_path;
+    Kind kind = Kind::both;
     NloptMethod nlopt = NloptMethod::slsqp;
     std::string name;
     double tolerance = 1e-8;
@@ -29,7 +29,7 @@ struct ProgramMethod {
     bool lifted = false;  ///< Ipopt: with the tip displacements as unknowns (lifted_program.hpp)
 
     /// Brings its own start and poses the program itself.
-    [[nodiscard]] bool whole() const { return kind == Kind::default_path || kind == Kind::proof; }
+    [[nodiscard]] bool whole() const { return kind == Kind::both || kind == Kind::proof; }
     [[nodiscard]] std::string setting() const;  ///< e.g. "tol 1e-08, polish"
 };
 

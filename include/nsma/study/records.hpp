@@ -30,7 +30,7 @@ struct SweepSummary {
     int open_bounds = 0;   ///< admissible patterns whose greatest energy is not exact
     int levels = 0;        ///< pattern-level pairs asked, closed-form least-energy orbits aside
     int solved = 0;        ///< admissible answers among them
-    int closed_form = 0;   ///< solved without a solver
+    int closed_form = 0;   ///< solved in closed form, or proved the best before a second solver was asked
     int below = 0;
     int above = 0;
     int undecided = 0;     ///< levels between the greatest energy attained and its proved bound
