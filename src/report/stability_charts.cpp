@@ -18,6 +18,12 @@ constexpr const char* heat_head =
     "set cbrange [0:1]\nunset colorbox\nset border lc rgb '#666666'\nset style fill solid\n";
 
 // The values that a record is drawn with.
+// As wide as a cell of a map.
+std::string short_number(double value) {
+    if (value < 1000) return fmt::format("{:.3g}", value);
+    return fmt::format("{:.{}f}k", 1e-3 * value, value < 9950 ? 1 : 0);
+}
+
 enum class Shown { failures, iterations, seconds };
 
 template <typename Value>
@@ -51,7 +57,7 @@ HeatMap::Cell cell(const StabilityRecord& record, Shown shown, int column, int r
                     fmt::format("{:.0f}{}", 100 * (1 - failures(record)), record.proved ? "" : "*")};
         case Shown::iterations: {
             const double value = std::max(record.iterations, 1.0);
-            return {column, row, shade(value, lo, hi), fmt::format("{:.3g}", record.iterations)};
+            return {column, row, shade(value, lo, hi), short_number(record.iterations)};
         }
         case Shown::seconds: {
             const double value = 1e3 * record.seconds;
