@@ -106,8 +106,8 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
     }
     if (!store.complete()) {
         store.add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-        if (queue.finished()) store.finish();
     }
+    if (queue.finished()) store.finish();  // also what a kill left complete but not yet under its name
     const auto [summary, line] = export_sweep(store, arguments.out);
     fmt::print("{}{}\n", summary_table(summary), line);
     if (summary.interrupted) {

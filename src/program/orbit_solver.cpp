@@ -12,6 +12,9 @@
 namespace nsma {
 namespace {
 
+// Levels this close to an end of the interval, relative, are the end: nearer than the energies of orbits are compared
+// (1e-12), farther than the rounding of the end.
+constexpr double end_tolerance = 1e-13;
 // Two vertices whose energies differ by rounding only are the same end of the interval.
 constexpr double tie_tolerance = 1e-13;
 // Distance beyond a row, relative to the size of the point, that rounding explains.
@@ -153,7 +156,7 @@ private:
         } else {
             const double level = *request_.level;
             const auto same = [&](double end) {
-                return std::abs(level - end) <= options_.level_tolerance * end;
+                return std::abs(level - end) <= end_tolerance * end;
             };
             if (reduction_.gap_sign != 0 && same(*answer_.interval.least)) {
                 add(set.least, "least-norm");
@@ -192,11 +195,14 @@ private:
 
     void optimise() {
         Search search(options_, ipopt_, problem_, request_, goal_, answer_.interval.least.value_or(1.0));
-        if (const auto proved = search.run()) {
-            answer_.agreement = Agreement::not_needed;
-            answer_.solvers = search.runs();
-            if (take(*proved)) return;
+        if (options_.solvers == SolverChoice::proof) {
+            if (const auto proved = search.first_proof()) {
+                answer_.agreement = Agreement::not_needed;
+                answer_.solvers = search.runs();
+                if (take(*proved)) return;
+            }
         }
+        search.run();
         answer_.agreement = search.agreement();
         answer_.objective_difference = search.difference();
         answer_.solvers = search.runs();
@@ -204,12 +210,17 @@ private:
         if (request_.objective == Objective::max_energy && take_vertex(ranked)) return;
         for (const Best* best : ranked) {
             if (!take(*best)) continue;
-            if (search.is_relaxed(best) && !search.a_solver_came_to(*best)) no_solver_came("a relaxation");
+            if (search.unsolved(best) && !search.a_solver_came_to(*best)) no_solver_came("the " + best->candidate.method);
             return;
         }
         // Both failed: the segment still gives an orbit of this pattern at this level.
         if (const auto segment = search.segment(); segment && take(*segment)) {
             answer_.reason = "no solver answer was usable: polished segment point";
+        }
+        if (answer_.verdict == Verdict::admissible && !answer_.orbit) {
+            answer_.verdict = Verdict::failed;
+            answer_.verdict_proved = false;
+            answer_.reason = "no point on the level was reached";
         }
     }
 

@@ -177,11 +177,28 @@ bool escaped(const Program& program, const Boundary& boundary, const std::vector
     return false;
 }
 
+// |L(x) - f(x)| at most: what the multipliers make of the rounding by which x misses its equalities and active rows.
+double multiplied_slack(const Program& program, const Eigen::VectorXd& x, const Multipliers& multipliers) {
+    double sum = std::abs(multipliers.sphere * program.sphere_residual(x));
+    if (program.equalities.rows() > 0) {
+        sum += multipliers.equality.cwiseAbs().dot((program.equalities * x - program.equality_values).cwiseAbs());
+    }
+    if (program.inequalities.rows() > 0) {
+        sum += multipliers.inequality.dot((program.inequality_values - program.inequalities * x).cwiseAbs());
+    }
+    for (Eigen::Index j = 0; j < x.size(); ++j) {
+        if (multipliers.lower[j] > 0) sum += multipliers.lower[j] * std::abs(x[j] - program.lower[j]);
+        if (multipliers.upper[j] > 0) sum += multipliers.upper[j] * std::abs(program.upper[j] - x[j]);
+    }
+    return sum;
+}
+
 // Best bound inf L over the flat of the equalities, over the sphere's multiplier only.
 double dual_bound(const Program& program, const Boundary& boundary, const Eigen::VectorXd& x,
                   const Multipliers& multipliers, double objective) {
     const Eigen::MatrixXd basis = null_space(Eigen::MatrixXd(program.equalities), program.variables());
-    const double slip = 2.0 * multipliers.residual * (1.0 + program.objective_gradient(x).norm());
+    const double slip = 2.0 * multipliers.residual * (1.0 + program.objective_gradient(x).norm()) +
+                        multiplied_slack(program, x, multipliers);
     if (basis.cols() == 0) return objective;
     if (program.sphere_variables < program.variables()) {
         // Not every unknown lies on the sphere: only a convex Lagrangian gives a bound.
@@ -283,6 +300,9 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
             if (moved) break;
         }
         if (!moved) break;
+    }
+    if (result.steps >= options.max_steps) {  // those of the last point are one step behind
+        order = first_order(program, boundary, boundary.active(result.x, options.activity), result.x);
     }
     // Where the sphere passes through a vertex, descent along its edges only creeps towards it: rows that are almost
     // active are tried as active.

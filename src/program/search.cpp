@@ -20,6 +20,7 @@ constexpr Eigen::Index slsqp_limit = 64;
 // Unknowns beyond which a relaxation, a matrix of their square under hundreds of eigenvalue decompositions, costs more
 // than all the rest; the bound of the Lagrangian stands.
 constexpr int relaxation_limit = 48;
+constexpr double bound_rounding = 1e-9;  // relative; a thousandth of what `global` allows
 // Unknowns beyond which Ipopt comes to an optimum in less time than the descent from a segment, which takes a step for
 // each bound it meets.
 constexpr Eigen::Index segment_limit = 48;
@@ -43,24 +44,30 @@ Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Patt
     if (program_.program.variables() > slsqp_limit) starts_ = (starts_ + 3) / 4;
 }
 
-std::optional<Best> Search::run() {
-    const bool until_proved = options_.solvers == SolverChoice::proof;
-    if (until_proved) {
-        if (const auto x = sphere_minimiser(program_.program)) {
-            if (Best free = found(polish(program_.program, *x), "sphere"); free.optimality.global) return free;
-        }
-        const auto begin = start(0);
-        if (begin && program_.program.variables() > segment_limit && attempt(*begin, "ipopt", 0, ipopt_) &&
-            ipopt_.optimality.global) {
-            return ipopt_;
-        }
-        if (auto point = segment(); point && point->optimality.global) return point;
+std::optional<Best> Search::first_proof() {
+    if (const auto x = sphere_minimiser(program_.program)) {
+        unaided_ = found(polish(program_.program, *x), "sphere");
+        if (unaided_.optimality.global) return unaided_;
     }
-    if (with_nlopt_) search_with_nlopt();
-    if (until_proved && nlopt_.usable) {
-        settle();
-        if (nlopt_.optimality.global) return nlopt_;
+    const auto begin = start(0);
+    if (begin && program_.program.variables() > segment_limit && attempt(*begin, "ipopt", 0, ipopt_) &&
+        ipopt_.optimality.global) {
+        return ipopt_;
     }
+    if (auto point = segment(); point && point->usable) {
+        if (point->optimality.global) return point;
+        if (!unaided_.usable || preferable(*point, unaided_)) unaided_ = std::move(*point);
+    }
+    search_with_nlopt();
+    settle();
+    for (const Best* best : ranked()) {
+        if (best->optimality.global) return *best;
+    }
+    return std::nullopt;
+}
+
+void Search::run() {
+    if (with_nlopt_ && nlopt_.run.name.empty()) search_with_nlopt();
     if (with_ipopt_) search_with_ipopt();
     if (with_nlopt_ && with_ipopt_) {
         if (ipopt_.usable && !not_worse(nlopt_, ipopt_)) search_with_nlopt();
@@ -70,7 +77,6 @@ std::optional<Best> Search::run() {
         ask(ipopt_, nlopt_, "nlopt");
     }
     settle();
-    return std::nullopt;
 }
 
 std::optional<Eigen::VectorXd> Search::start(int k) const {
@@ -115,14 +121,32 @@ void Search::ask(const Best& better, Best& worse, const char* solver) {
 }
 
 // Where the Lagrangian leaves a gap: bounds the objective by relaxations, whose solutions are starts that find better
-// optima; the solvers are then asked about those.
+// optima; the solvers are then asked about those. The bound is found once and holds for whatever comes later.
 void Search::settle() {
-    const Best* best = &ipopt_;
-    if (nlopt_.usable && (!best->usable || preferable(nlopt_, *best))) best = &nlopt_;
+    const auto found_so_far = ranked();
+    if (found_so_far.empty()) return;
+    if (!bounded_ && !found_so_far.front()->optimality.global) relax(*found_so_far.front());
+    double value = product_bound_.value_or(-infinity);
+    if (bounded_) value = std::max(value, bounded_->value);
+    for (const Best* best : found_so_far) {  // the Lagrangian's bounds are of the program, not of the point
+        if (best->optimality.lower_bound && program_.objective_unit > 0) {
+            value = std::max(value, *best->optimality.lower_bound / program_.objective_unit);
+        }
+    }
+    for (Best* one : {&ipopt_, &nlopt_, &relaxed_, &unaided_}) {
+        if (!one->usable) continue;
+        if (bounded_) one->optimality.nodes = bounded_->nodes;
+        if (value > -infinity) {
+            set_bound(program_.program.objective(program_.point(one->candidate.gamma)), value, one->optimality);
+        }
+    }
+}
+
+void Search::relax(const Best& best) {
     const int unknowns = problem_.set.reduction.variables();
-    if (options_.bound_nodes < 1 || unknowns > relaxation_limit || !best->usable || best->optimality.global || !level_) return;
+    if (options_.bound_nodes < 1 || unknowns > relaxation_limit || !level_) return;
     std::optional<Polished> better;
-    double objective = program_.program.objective(program_.point(best->candidate.gamma));
+    double objective = program_.program.objective(program_.point(best.candidate.gamma));
     ConicBoundOptions bounding;
     const bool costly = unknowns > costly_relaxation;
     bounding.node_limit = costly ? (options_.bound_nodes + 7) / 8 : options_.bound_nodes;
@@ -137,19 +161,11 @@ void Search::settle() {
         }
         return objective;
     };
-    const ConicBound bound = conic_bound(program_.program, objective, bounding);
+    bounded_ = conic_bound(program_.program, objective, bounding);
     if (better) {
         relaxed_ = found(*better, "relaxation");
         if (!ipopt_.run.name.empty()) ask(relaxed_, ipopt_, "ipopt");
         if (!nlopt_.run.name.empty()) ask(relaxed_, nlopt_, "nlopt");
-    }
-    for (Best* one : {&ipopt_, &nlopt_, &relaxed_}) {
-        if (!one->usable) continue;
-        one->optimality.nodes = bound.nodes;
-        const double value = std::max(bound.value, product_bound_.value_or(-infinity));
-        if (value > -infinity) {
-            set_bound(program_.program.objective(program_.point(one->candidate.gamma)), value, one->optimality);
-        }
     }
 }
 
@@ -229,7 +245,8 @@ std::optional<Best> Search::segment() {
 
 // `objective` and `bound` in the scale of the program.
 void Search::set_bound(double objective, double bound, Optimality& result) const {
-    // Rounding may put a tight bound above the value it bounds.
+    // Rounding may put a tight bound just above the value it bounds; one further above bounds nothing.
+    if (bound > objective + bound_rounding * std::abs(objective)) return;
     bound = std::min(bound, objective);
     if (program_.objective_unit > 0) result.lower_bound = bound * program_.objective_unit;
     result.gap = objective != 0 ? (objective - bound) / std::abs(objective) : 0.0;
@@ -280,7 +297,7 @@ std::vector<SolverRun> Search::runs() const {
 
 std::vector<const Best*> Search::ranked() const {
     std::vector<const Best*> all;
-    for (const Best* best : {&ipopt_, &nlopt_, &relaxed_}) {
+    for (const Best* best : {&ipopt_, &nlopt_, &relaxed_, &unaided_}) {
         if (best->usable) all.push_back(best);
     }
     std::stable_sort(all.begin(), all.end(), [this](const Best* a, const Best* b) { return preferable(*a, *b); });

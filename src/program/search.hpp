@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "nsma/program/conic_bound.hpp"
 #include "nsma/program/level_points.hpp"
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/orbit_solver.hpp"
@@ -45,8 +46,10 @@ public:
     Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const PatternProblem& problem, const OrbitRequest& request,
            const Goal& goal, double least_energy);
 
-    /// With SolverChoice::proof it ends at the first answer proved to be the best, which it returns.
-    std::optional<Best> run();
+    /// The search of SolverChoice::proof until an answer is proved to be the best; absent where none is.
+    [[nodiscard]] std::optional<Best> first_proof();
+    /// The whole search, going on with what is known already.
+    void run();
 
     [[nodiscard]] Agreement agreement() const;
     [[nodiscard]] std::optional<double> difference() const;  ///< of the solvers, relative; absent unless both are usable
@@ -54,7 +57,8 @@ public:
     [[nodiscard]] std::vector<const Best*> ranked() const;   ///< the usable ones, the best first
     /// A solver asked for came to the objective of `best`.
     [[nodiscard]] bool a_solver_came_to(const Best& best) const;
-    [[nodiscard]] bool is_relaxed(const Best* best) const { return best == &relaxed_; }
+    /// Not the answer of a solver.
+    [[nodiscard]] bool unsolved(const Best* best) const { return best == &relaxed_ || best == &unaided_; }
     /// The segment point, polished: admissible without a solver.
     [[nodiscard]] std::optional<Best> segment();
 
@@ -65,6 +69,7 @@ private:
     void search_with_ipopt();
     void ask(const Best& better, Best& worse, const char* solver);
     void settle();
+    void relax(const Best& best);
     bool attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best);
     [[nodiscard]] SolverOutcome call(const std::string& solver, const Eigen::VectorXd& x);
     [[nodiscard]] Best found(const Polished& polished, const char* method);
@@ -86,6 +91,8 @@ private:
     Best ipopt_;
     Best nlopt_;
     Best relaxed_;  // a better orbit that bounding came upon
+    Best unaided_;  // the best one found before a solver was asked
+    std::optional<ConicBound> bounded_;
     std::vector<SolverRun> others_;
     std::optional<double> product_bound_;  // in the scale of the program
 };

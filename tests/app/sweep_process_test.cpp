@@ -139,6 +139,8 @@ TEST_F(SweepProcess, KilledAtTwentyRandomMomentsItGoesOnToTheSameTables) {
         }
         EXPECT_EQ(run(sweep(scene, out, true)), code) << output();
         expect_same(out, whole);
+        EXPECT_TRUE(fs::exists(out / "results.sqlite"));
+        EXPECT_FALSE(fs::exists(out / "results.sqlite.part"));
         // Once more changes nothing, nor does a new export.
         EXPECT_EQ(run(sweep(scene, out, true)), code) << output();
         fs::remove(out / "levels.csv");
