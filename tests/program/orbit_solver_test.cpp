@@ -368,4 +368,22 @@ TEST(OrbitSolver, Misuse) {
     EXPECT_THROW(OrbitSolver{options}, std::invalid_argument);
 }
 
+TEST(OrbitSolver, LevelsAFewRoundingsInsideTheIntervalHaveAnOrbit) {
+    for (const auto& pattern : {Pattern{6, 16, 4}, {6, 23, 1}, {20, 60, 10}}) {
+        const auto problem = pattern_problem(pattern, 1);
+        OrbitSolver solver(unbounded());
+        for (const bool greatest : {false, true}) {
+            const double end = greatest ? *problem.interval.greatest : *problem.interval.least;
+            double level = end;
+            for (int step = 0; step < 40; ++step) {
+                level = std::nextafter(level, greatest ? 0.0 : 2 * end);
+                const auto answer = solver.solve(bar_with_gap(1), problem, {.level = level, .reference = {}});
+                ASSERT_EQ(answer.verdict, Verdict::admissible) << answer.reason << " at " << level - end;
+                ASSERT_TRUE(answer.orbit && answer.replay);
+                EXPECT_NEAR(*answer.energy, level, 1e-12 * level);  // the acceptance of the project
+            }
+        }
+    }
+}
+
 }  // namespace
