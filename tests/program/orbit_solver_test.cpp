@@ -260,7 +260,7 @@ TEST(OrbitSolver, OneSolverAlone) {
     const OrbitRequest request{.level = 1.5 * least_energy(pattern, 1), .reference = {}};
     const auto both = solve(pattern, 1, request);
     for (const auto choice : {SolverChoice::ipopt, SolverChoice::nlopt}) {
-        OrbitSolverOptions options;
+        OrbitSolverOptions options = usual();
         options.solvers = choice;
         const auto answer = solve(pattern, 1, request, options);
         expect_sound(answer);
@@ -277,7 +277,7 @@ TEST(OrbitSolver, ProofNeedsNoSolverWhereTheSegmentPointIsProvedBest) {
     for (const double factor : {1.01, 1.5, 3.0, 7.9}) {
         const OrbitRequest request{.level = factor * least_energy(pattern, 1), .reference = {}};
         const auto both = solve(pattern, 1, request);
-        OrbitSolverOptions first_proof;
+        OrbitSolverOptions first_proof = usual();
         first_proof.solvers = SolverChoice::proof;
         const auto proof = solve(pattern, 1, request, first_proof);
         expect_sound(proof);
