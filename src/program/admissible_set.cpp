@@ -8,6 +8,7 @@
 #include "nsma/program/least_squares.hpp"
 #include "nsma/program/linear_program.hpp"
 
+#include "conditions_program.hpp"
 #include "known_set.hpp"
 
 namespace nsma {
@@ -26,15 +27,7 @@ constexpr Eigen::Index full_climb_limit = 64;
 
 LinearProgram cone_program(const Reduction& reduction, double level, double box) {
     const auto n = static_cast<Eigen::Index>(reduction.variables());
-    const auto count = reduction.rows.rows();
-    LinearProgram program;
-    program.rows.resize(count + 1, n);
-    program.rows.topRows(count) = reduction.rows.cast<double>();
-    program.rows.row(count) = reduction.contact_row.cast<double>().transpose();
-    program.row_lower = Eigen::VectorXd::Constant(count + 1, -no_bound);
-    program.row_upper = Eigen::VectorXd::Zero(count + 1);
-    program.row_lower[count] = level;
-    program.row_upper[count] = level;
+    LinearProgram program = conditions_program(reduction, level);
     program.lower = Eigen::VectorXd::Zero(n);
     program.upper = Eigen::VectorXd::Constant(n, box);
     for (Eigen::Index j = 0; j < n; ++j) {

@@ -5,6 +5,8 @@
 #include <queue>
 #include <utility>
 
+#include "conditions_program.hpp"
+
 namespace nsma {
 namespace {
 
@@ -76,43 +78,33 @@ std::optional<GreatestProof> BoundTree::grow(int node_limit) {
 
 bool BoundTree::make_box() {
     if (!box_.empty()) return true;
-    {
-        box_lower_ = Eigen::VectorXd::Zero(reduction_.variables());
-        box_upper_ = box_lower_;
-        for (std::size_t j = 0; j < variables(); ++j) {
-            for (const int side : {1, -1}) {
-                std::vector<Rational> form(variables());
-                form[j] = side;
-                auto bound = bounds_.bound(form);
-                if (!bound) return false;
-                const double value = to_double(bound->proof.contact * reduction_.gap_sign);
-                (side > 0 ? box_upper_ : box_lower_)[static_cast<Eigen::Index>(j)] = side * value;
-                box_.push_back(std::move(*bound));
-            }
+    box_lower_ = Eigen::VectorXd::Zero(reduction_.variables());
+    box_upper_ = box_lower_;
+    for (std::size_t j = 0; j < variables(); ++j) {
+        for (const int side : {1, -1}) {
+            std::vector<Rational> form(variables());
+            form[j] = side;
+            auto bound = bounds_.bound(form);
+            if (!bound) return false;
+            const double value = to_double(bound->proof.contact * reduction_.gap_sign);
+            (side > 0 ? box_upper_ : box_lower_)[static_cast<Eigen::Index>(j)] = side * value;
+            box_.push_back(std::move(*bound));
         }
-        for (const auto& zero : reduction_.forced) {
-            for (const int side : {1, -1}) {
-                std::vector<Rational> full(static_cast<std::size_t>(kernel_.dimension()));
-                full[static_cast<std::size_t>(zero.column)] = side;
-                FormBound bound{sparse(full), {}};
-                bounds_.cover_forced(full, bound.proof);
-                box_.push_back(std::move(bound));
-            }
+    }
+    for (const auto& zero : reduction_.forced) {
+        for (const int side : {1, -1}) {
+            std::vector<Rational> full(static_cast<std::size_t>(kernel_.dimension()));
+            full[static_cast<std::size_t>(zero.column)] = side;
+            FormBound bound{sparse(full), {}};
+            bounds_.cover_forced(full, bound.proof);
+            box_.push_back(std::move(bound));
         }
     }
     return true;
 }
 
 LinearProgram BoundTree::relaxation_program() const {
-    const auto n = static_cast<Eigen::Index>(reduction_.variables());
-    const auto count = reduction_.rows.rows();
-    LinearProgram program;
-    program.rows.resize(count + 1, n);
-    program.rows.topRows(count) = reduction_.rows.cast<double>();
-    program.rows.row(count) = reduction_.contact_row.cast<double>().transpose();
-    program.row_lower = Eigen::VectorXd::Constant(count + 1, -no_bound);
-    program.row_upper = Eigen::VectorXd::Zero(count + 1);
-    program.row_lower[count] = program.row_upper[count] = reduction_.gap_sign;
+    LinearProgram program = conditions_program(reduction_, reduction_.gap_sign);
     program.lower = box_lower_;
     program.upper = box_upper_;
     return program;

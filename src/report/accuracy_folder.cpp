@@ -5,7 +5,6 @@
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <sstream>
 
 #include <Eigen/Core>
 #include <fmt/format.h>
@@ -15,6 +14,7 @@
 #include "nsma/program/linear_program.hpp"
 #include "nsma/program/solver.hpp"
 #include "one_line.hpp"
+#include "results_folder.hpp"
 
 namespace nsma {
 namespace {
@@ -22,18 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double rounding_error = 1e-14;  // two errors below it are the same
-
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-    throw InputError(one_line(fmt::format("{}: {}", path.string(), what)));
-}
-
-std::optional<std::string> contents(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return std::nullopt;
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-}
 
 std::string steps(const Pattern& pattern) {
     return fmt::format("{},{},{}", pattern.cells, pattern.free_steps, pattern.contact_steps);
@@ -54,31 +42,7 @@ std::string cpu_name() {
 }  // namespace
 
 AccuracyFolder::AccuracyFolder(const fs::path& folder, const Scene& scene) : folder_(folder) {
-    if (scene.text.empty())
-        throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
-    std::error_code code;
-    if (fs::exists(folder, code) && !fs::is_directory(folder, code))
-        fail(folder, "expected a folder, got a file");
-    fs::create_directories(folder, code);
-    if (code) fail(folder, fmt::format("cannot be made: {}", code.message()));
-    const fs::path copy = folder / "scene.toml";
-    if (fs::exists(copy)) {
-        if (contents(copy).value_or("") != scene.text) {
-            fail(folder, "holds results of another scene (its scene.toml differs); choose another folder or remove it");
-        }
-    } else {
-        for (const char* file : accuracy_files) {
-            if (fs::exists(folder / file))
-                fail(folder / file, "is in the way: the folder has no scene.toml that would tell its scene");
-        }
-        Table table;
-        open(table, "scene.toml", "");
-        if (std::fwrite(scene.text.data(), 1, scene.text.size(), table.file.get()) != scene.text.size())
-            fail(table.path, fmt::format("cannot be written: {}", std::strerror(errno)));
-        table.file.reset();
-        fs::rename(table.path, copy, code);
-        if (code) fail(copy, fmt::format("cannot be written: {}", code.message()));
-    }
+    prepare_results_folder(folder, scene, accuracy_files);
     open(programs_, "programs.csv",
          "cells,free_steps,contact_steps,kernel_dimension,method,setting,runs,reported,succeeded,certified,proved,seconds_median,"
          "seconds_quartile_1,seconds_quartile_3,iterations,worst_gap,worst_violation,error");

@@ -1,37 +1,17 @@
 #include "nsma/report/sensitivity_folder.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 
 #include "csv.hpp"
 #include "one_line.hpp"
+#include "results_folder.hpp"
 
 namespace nsma {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-    throw InputError(one_line(fmt::format("{}: {}", path.string(), what)));
-}
-
-void write_file(const fs::path& file, const std::string& text) {
-    const fs::path part = file.string() + ".part";
-    errno = 0;
-    std::FILE* stream = std::fopen(part.c_str(), "wb");
-    bool written = stream != nullptr && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
-    if (stream != nullptr) written = std::fclose(stream) == 0 && written;
-    if (!written) fail(part, fmt::format("cannot be written: {}", std::strerror(errno)));
-    std::error_code code;
-    fs::rename(part, file, code);
-    if (code) fail(file, fmt::format("cannot be written: {}", code.message()));
-}
 
 constexpr const char* pattern_columns = "cells,gap,free_steps,contact_steps";
 
@@ -245,30 +225,7 @@ std::vector<Funnel> funnels(const std::vector<AblationRecord>& records) {
 }
 
 void open_sensitivity_folder(const fs::path& folder, const Scene& scene) {
-    if (scene.text.empty()) {
-        throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
-    }
-    std::error_code code;
-    if (fs::exists(folder, code) && !fs::is_directory(folder, code)) fail(folder, "expected a folder, got a file");
-    fs::create_directories(folder, code);
-    if (code) fail(folder, fmt::format("cannot be made: {}", code.message()));
-    const fs::path copy = folder / "scene.toml";
-    if (!fs::exists(copy)) {
-        for (const char* file : sensitivity_files) {
-            if (fs::exists(folder / file)) {
-                fail(folder / file, "is in the way: the folder has no scene.toml that would tell its scene");
-            }
-        }
-        write_file(copy, scene.text);
-        return;
-    }
-    std::ifstream stream(copy, std::ios::binary);
-    if (!stream) fail(copy, fmt::format("cannot be read: {}", std::strerror(errno)));
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (text.str() != scene.text) {
-        fail(folder, "holds results of another scene (its scene.toml differs); choose another folder or remove it");
-    }
+    prepare_results_folder(folder, scene, sensitivity_files);
 }
 
 std::string sensitivity_text(const std::string& file, const Scene& scene, const SensitivityRecords& records,
@@ -289,7 +246,7 @@ std::string sensitivity_text(const std::string& file, const Scene& scene, const 
 void write_sensitivity(const fs::path& folder, const Scene& scene, const SensitivityRecords& records,
                        const SensitivitySummary& summary) {
     for (const char* file : sensitivity_files) {
-        write_file(folder / file, sensitivity_text(file, scene, records, summary));
+        write_whole(folder / file, sensitivity_text(file, scene, records, summary));
     }
 }
 

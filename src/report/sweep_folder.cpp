@@ -3,8 +3,6 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,50 +11,12 @@
 #include "nsma/report/orbit_json.hpp"
 #include "nsma/report/tables.hpp"
 #include "one_line.hpp"
+#include "results_folder.hpp"
 
 namespace nsma {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-    throw InputError(one_line(fmt::format("{}: {}", path.string(), what)));
-}
-
-[[noreturn]] void fail_errno(const fs::path& path) {
-    fail(path, fmt::format("cannot be written: {}", std::strerror(errno)));
-}
-
-std::optional<std::string> contents(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return std::nullopt;
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-}
-
-fs::path part_of(const fs::path& file) { return file.string() + ".part"; }
-
-void put_in_place(const fs::path& file) {
-    std::error_code code;
-    fs::rename(part_of(file), file, code);
-    if (code) fail(file, fmt::format("cannot be written: {}", code.message()));
-}
-
-/// Writes a file so that it is there whole or not at all.
-void write_whole(const fs::path& path, const std::string& text) {
-    const fs::path part = part_of(path);
-    std::FILE* file = std::fopen(part.c_str(), "wb");
-    if (file == nullptr) fail_errno(part);
-    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() &&
-                         std::fflush(file) == 0 && (fsync(fileno(file)) == 0 || errno == EINVAL);
-    const int code = errno;
-    if (std::fclose(file) != 0 || !written) {
-        if (!written) errno = code;
-        fail_errno(part);
-    }
-    put_in_place(path);
-}
 
 /// Whether the folder holds a whole, uninterrupted sweep.
 bool complete(const fs::path& folder) {
@@ -108,34 +68,7 @@ constexpr const char* csv_notes =
 
 }  // namespace
 
-void prepare_sweep_folder(const fs::path& folder, const Scene& scene) {
-    if (scene.text.empty())
-        throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
-    std::error_code code;
-    if (fs::exists(folder, code) && !fs::is_directory(folder, code))
-        fail(folder, "expected a folder, got a file");
-    fs::create_directories(folder, code);
-    if (code) fail(folder, fmt::format("cannot be made: {}", code.message()));
-
-    const fs::path copy = folder / "scene.toml";
-    if (fs::exists(copy)) {
-        const auto text = contents(copy);
-        if (!text) fail(copy, fmt::format("cannot be read: {}", std::strerror(errno)));
-        if (*text != scene.text) {
-            fail(folder,
-                 "holds results of another scene (its scene.toml differs); choose another folder "
-                 "or remove it");
-        }
-    } else {
-        for (const char* file : sweep_files) {
-            if (fs::exists(folder / file)) {
-                fail(folder / file,
-                     "is in the way: the folder has no scene.toml that would tell its scene");
-            }
-        }
-        write_whole(copy, scene.text);
-    }
-}
+void prepare_sweep_folder(const fs::path& folder, const Scene& scene) { prepare_results_folder(folder, scene, sweep_files); }
 
 SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)
     : folder_(folder), bar_(scene.bar) {

@@ -13,7 +13,7 @@
 
 #include "nsma/report/sweep_folder.hpp"
 #include "nsma/study/record_rows.hpp"
-#include "one_line.hpp"
+#include "results_folder.hpp"
 
 namespace nsma {
 namespace {
@@ -24,10 +24,6 @@ constexpr const char* final_name = "results.sqlite";
 constexpr const char* part_name = "results.sqlite.part";
 // Raised with every change of the tables below.
 constexpr const char* format = "1";
-
-[[noreturn]] void fail(const fs::path& file, const std::string& what) {
-    throw InputError(one_line(fmt::format("{}: {}", file.string(), what)));
-}
 
 std::string hash_of(const std::string& text) {
     std::uint64_t hash = 14695981039346656037U;  // FNV-1a
