@@ -35,7 +35,7 @@ int run(const AccuracyArguments& arguments, const std::atomic<bool>& stop) {
         throw InputError(fmt::format("{}: gap: expected one that is not zero: a closed gap has no energy interval to study, got 0",
                                      arguments.scene_file));
     }
-    if (scene.objective == Objective::min_energy || scene.objective == Objective::max_energy) {
+    if (is_extreme(scene.objective)) {
         throw InputError(fmt::format("{}: objective: expected one at a given energy, got {}", arguments.scene_file,
                                      name(scene.objective)));
     }

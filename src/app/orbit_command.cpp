@@ -86,7 +86,7 @@ int run(const OrbitArguments& arguments, const std::atomic<bool>&) {
     OrbitRequest request;
     request.objective = arguments.objective.value_or(scene.objective);
     request.level = arguments.energy;
-    const bool extreme = request.objective == Objective::min_energy || request.objective == Objective::max_energy;
+    const bool extreme = is_extreme(request.objective);
     if (extreme && request.level) {
         throw InputError(fmt::format("command line: --energy: expected none with objective {}, got {}",
                                      name(request.objective), *request.level));

@@ -35,7 +35,7 @@ int run(const SensitivityArguments& arguments, const std::atomic<bool>& stop) {
             throw InputError("command line: --energy: expected joules (a closed gap has no least-energy orbit), got none");
         }
     }
-    const bool extreme = scene.objective == Objective::min_energy || scene.objective == Objective::max_energy;
+    const bool extreme = is_extreme(scene.objective);
     if (extreme && request.level) {
         throw InputError(fmt::format("command line: --energy: expected none with objective {}, got {}",
                                      name(scene.objective), *request.level));

@@ -13,7 +13,7 @@
 #include "nsma/report/sweep_store.hpp"
 #include "nsma/report/tables.hpp"
 #include "nsma/study/record_rows.hpp"
-#include "nsma/study/sweep_work.hpp"
+#include "nsma/study/sweep_queue.hpp"
 
 namespace nsma::app {
 namespace {
@@ -83,7 +83,7 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
     }
     SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
-    SweepQueue queue(scene, crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
+    SweepQueue queue(scene, arguments.solver, crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
     if (arguments.resume) store.for_each([&queue](const WorkResult& result) { queue.done(result); });
     const auto begin = std::chrono::steady_clock::now();
     {

@@ -35,7 +35,7 @@ OptimumAnalysis::OptimumAnalysis(const RelaxedSet& relaxed, Objective asked, std
                                  const Eigen::VectorXd& start, const MagnitudeBounds& magnitude,
                                  const Eigen::VectorXd& reference)
     : set(relaxed), objective(asked), magnitude_(magnitude) {
-    const bool extreme = objective == Objective::min_energy || objective == Objective::max_energy;
+    const bool extreme = is_extreme(objective);
     if (extreme == wanted.has_value()) {
         throw std::invalid_argument(std::string("level: expected ") + (extreme ? "none" : "one") + " for objective " +
                                     std::string(name(objective)));

@@ -130,7 +130,7 @@ Eigen::VectorXd OrbitProgram::point(const Eigen::VectorXd& gamma) const {
 OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Objective objective,
                            std::optional<double> level, double reference_energy,
                            const Eigen::VectorXd& reference) {
-    const bool extreme = objective == Objective::min_energy || objective == Objective::max_energy;
+    const bool extreme = is_extreme(objective);
     if (extreme == level.has_value()) {
         throw std::invalid_argument(std::string("level: expected ") +
                                     (extreme ? "none" : "one") + " for objective " +

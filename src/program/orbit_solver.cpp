@@ -20,10 +20,6 @@ constexpr double tie_tolerance = 1e-13;
 // Distance beyond a row, relative to the size of the point, that rounding explains.
 constexpr double row_rounding = 1e-13;
 
-bool is_extreme(Objective objective) {
-    return objective == Objective::min_energy || objective == Objective::max_energy;
-}
-
 bool admissible_point(const Reduction& reduction, const Eigen::VectorXd& gamma) {
     const double tolerance = row_rounding * gamma.lpNorm<1>();
     for (Eigen::Index j = 0; j < gamma.size(); ++j) {
@@ -348,6 +344,11 @@ OrbitAnswer OrbitSolver::solve(const Bar& bar, const PatternProblem& problem,
     if (request.reference.size() > 0 && request.reference.size() != window) {
         throw std::invalid_argument("reference: expected size " + std::to_string(window) + ", got " +
                                     std::to_string(request.reference.size()));
+    }
+    const Eigen::Index amplitudes = problem.kernel.dimension();
+    if (request.start.size() > 0 && (request.start.size() != amplitudes || !request.start.allFinite())) {
+        throw std::invalid_argument("start: expected " + std::to_string(amplitudes) + " finite amplitudes, got " +
+                                    std::to_string(request.start.size()));
     }
     const auto begin = std::chrono::steady_clock::now();
     OrbitAnswer answer = Solve(options_, ipopt_, bar, problem, request).run();

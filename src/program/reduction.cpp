@@ -218,6 +218,14 @@ Eigen::VectorXd Reduction::beta(const Eigen::VectorXd& gamma) const {
     return result;
 }
 
+Eigen::VectorXd Reduction::gamma(const Eigen::VectorXd& beta) const {
+    Eigen::VectorXd result(variables());
+    for (std::size_t j = 0; j < column.size(); ++j) {
+        result[static_cast<Eigen::Index>(j)] = flip[j] * beta[column[j]];
+    }
+    return result;
+}
+
 Reduction reduce(const Conditions& conditions) {
     const Kernel& kernel = conditions.kernel;
     Reduction reduction;

@@ -185,7 +185,7 @@ RelaxedProgram relaxed_program(const RelaxedSet& set, Objective objective, doubl
         throw std::invalid_argument("level: expected a finite number > 0, got " +
                                     std::to_string(level));
     }
-    const bool extreme = objective == Objective::min_energy || objective == Objective::max_energy;
+    const bool extreme = is_extreme(objective);
     const bool peak = objective == Objective::least_force;
     const int m = set.dimension();
     RelaxedProgram result;

@@ -25,7 +25,15 @@ constexpr double bound_rounding = 1e-9;  // relative; a thousandth of what `glob
 // each bound it meets.
 constexpr Eigen::Index segment_limit = 48;
 
+// Number of the start that OrbitRequest::start gives.
+constexpr int warm_start = -1;
+
 }  // namespace
+
+bool ipopt_goes_first(const OrbitSolverOptions& options, int kernel_dimension) {
+    return options.solvers == SolverChoice::ipopt || options.solvers == SolverChoice::both ||
+           (options.solvers == SolverChoice::proof && kernel_dimension > segment_limit);
+}
 
 double Goal::value(const Eigen::VectorXd& gamma) const {
     return objective_of_waves(problem.kernel, objective, problem.set.reduction.beta(gamma), reference);
@@ -41,6 +49,7 @@ Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Patt
       program_(orbit_program(problem.set.reduction, problem.kernel, goal.objective, request.level, least_energy, goal.reference)),
       with_ipopt_(options.solvers != SolverChoice::nlopt), with_nlopt_(options.solvers != SolverChoice::ipopt), starts_(options.starts) {
     if (request.level) level_.emplace(problem.set, *request.level);
+    if (level_ && request.start.size() > 0) warm_ = level_->reach(problem.set.reduction.gamma(request.start));
     if (program_.program.variables() > slsqp_limit) starts_ = (starts_ + 3) / 4;
 }
 
@@ -49,10 +58,9 @@ std::optional<Best> Search::first_proof() {
         unaided_ = found(polish(program_.program, *x), "sphere");
         if (unaided_.optimality.global) return unaided_;
     }
-    const auto begin = start(0);
-    if (begin && program_.program.variables() > segment_limit && attempt(*begin, "ipopt", 0, ipopt_) &&
-        ipopt_.optimality.global) {
-        return ipopt_;
+    if (program_.program.variables() > segment_limit) {
+        const auto begin = start(ipopt_start());
+        if (begin && attempt(*begin, "ipopt", ipopt_start(), ipopt_) && ipopt_.optimality.global) return ipopt_;
     }
     if (auto point = segment(); point && point->usable) {
         if (point->optimality.global) return point;
@@ -80,11 +88,14 @@ void Search::run() {
 }
 
 std::optional<Eigen::VectorXd> Search::start(int k) const {
+    if (k == warm_start) return warm_;
     if (level_) return level_->start(k);
     const auto& vertices = problem_.set.vertices;
     if (vertices.empty()) return problem_.set.least;
     return vertices[static_cast<std::size_t>(k) % vertices.size()];
 }
+
+int Search::ipopt_start() const { return warm_ ? warm_start : 0; }
 
 // A point on the level a tenth of the way from `gamma` to start k.
 std::optional<Eigen::VectorXd> Search::aside_of(const Eigen::VectorXd& gamma, int k) const {
@@ -106,7 +117,7 @@ void Search::search_with_nlopt() {
 // Starts elsewhere, and goes on to further starts only while Ipopt holds a worse optimum.
 void Search::search_with_ipopt() {
     for (int k = 0; k < starts_ && !ipopt_.optimality.global; ++k) {
-        const int number = ipopt_.run.name.empty() ? 0 : next_++;
+        const int number = ipopt_.run.name.empty() ? ipopt_start() : next_++;
         const auto begin = start(number);
         if (!begin) return;
         attempt(*begin, "ipopt", number, ipopt_);

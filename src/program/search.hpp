@@ -64,6 +64,7 @@ public:
 
 private:
     [[nodiscard]] std::optional<Eigen::VectorXd> start(int k) const;
+    [[nodiscard]] int ipopt_start() const;  // number of its first one
     [[nodiscard]] std::optional<Eigen::VectorXd> aside_of(const Eigen::VectorXd& gamma, int k) const;
     void search_with_nlopt();
     void search_with_ipopt();
@@ -84,6 +85,7 @@ private:
     const Goal& goal_;
     OrbitProgram program_;
     std::optional<LevelPoints> level_;
+    std::optional<Eigen::VectorXd> warm_;  // on the level, from an orbit at another
     bool with_ipopt_;
     bool with_nlopt_;
     int starts_;    // of each solver

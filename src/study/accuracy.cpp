@@ -118,7 +118,7 @@ bool accuracy(const Scene& scene, const AccuracyOptions& options, AccuracySink& 
     if (scene.bar.gap_sign() == 0) {
         throw std::invalid_argument("gap: expected one that is not zero: a closed gap has no energy interval to study, got 0");
     }
-    if (scene.objective == Objective::min_energy || scene.objective == Objective::max_energy) {
+    if (is_extreme(scene.objective)) {
         throw std::invalid_argument("objective: expected one at a given energy, got " + std::string(name(scene.objective)));
     }
     AccuracyRun run(scene, options, sink, keep_going);

@@ -160,15 +160,9 @@ ProgramCase::ProgramCase(const Bar& the_bar, const PatternProblem& the_problem, 
     thorough.starts = reference_starts;
     OrbitSolver solver(thorough);
     const auto gamma_at = [&](double at, OrbitAnswer& answer) {
-        answer = solver.solve(bar, problem, {at, objective, {}});
+        answer = solver.solve(bar, problem, {at, objective, {}, {}});
         if (!answer.orbit) throw std::invalid_argument("level: expected an attainable one, got " + std::to_string(at));
-        const Reduction& reduction = problem.set.reduction;
-        Eigen::VectorXd gamma(reduction.variables());
-        for (int j = 0; j < reduction.variables(); ++j) {
-            const auto k = static_cast<std::size_t>(j);
-            gamma[j] = reduction.flip[k] * answer.orbit->beta[reduction.column[k]];
-        }
-        return gamma;
+        return problem.set.reduction.gamma(answer.orbit->beta);
     };
     pose_seconds = posing_seconds();
     OrbitAnswer answer;

@@ -371,7 +371,7 @@ std::string packed(const WorkUnit& unit) {
     Bytes bytes;
     bytes.number(static_cast<std::int64_t>(unit.pattern));
     bytes.number(static_cast<std::int64_t>(unit.place));
-    bytes.numbers(unit.reference);
+    bytes.numbers(unit.before);
     return std::move(bytes.text);
 }
 
@@ -380,7 +380,7 @@ WorkUnit unpacked_unit(std::string_view text) {
     WorkUnit unit;
     unit.pattern = static_cast<long>(bytes.number<std::int64_t>());
     unit.place = static_cast<int>(bytes.number<std::int64_t>());
-    unit.reference = bytes.numbers();
+    unit.before = bytes.numbers();
     bytes.end();
     return unit;
 }

@@ -94,7 +94,7 @@ private:
     // Every level asked; returns the level of the relaxation curves: the middle one solved.
     std::optional<double> optima(const PatternProblem& problem) {
         std::vector<std::optional<double>> levels;
-        const bool extreme = scene_.objective == Objective::min_energy || scene_.objective == Objective::max_energy;
+        const bool extreme = is_extreme(scene_.objective);
         if (gap_sign_ != 0) levels.emplace_back();
         if (request_.pattern) {
             if (request_.level) levels = {request_.level};

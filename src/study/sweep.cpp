@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "nsma/study/sweep_work.hpp"
+#include "nsma/study/sweep_queue.hpp"
 
 namespace nsma {
 
@@ -10,7 +10,7 @@ SweepSummary sweep(const Scene& scene, const OrbitSolverOptions& options, SweepS
                    const std::function<bool()>& keep_going) {
     const auto begin = std::chrono::steady_clock::now();
     SweepSummary summary;
-    SweepQueue queue(scene, SweepQueue::Order::scene);
+    SweepQueue queue(scene, options, SweepQueue::Order::scene);
     SweepWorker worker(scene, options);
     while (!queue.finished()) {
         if (!keep_going()) {

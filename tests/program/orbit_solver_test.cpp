@@ -289,6 +289,32 @@ TEST(OrbitSolver, ProofNeedsNoSolverWhereTheSegmentPointIsProvedBest) {
     }
 }
 
+TEST(OrbitSolver, IpoptStartsFromAnOrbitAtALevelNearby) {
+    const Pattern pattern{20, 48, 16};
+    const double least = least_energy(pattern, 1);
+    const auto near = solve(pattern, 1, {.level = 1.6 * least}, unbounded());
+    const auto cold = solve(pattern, 1, {.level = 1.5 * least}, unbounded());
+    const auto warm = solve(pattern, 1, {.level = 1.5 * least, .start = near.orbit->beta}, unbounded());
+    expect_sound(warm);
+    EXPECT_NEAR(*warm.objective_value, *cold.objective_value, 1e-6 * *cold.objective_value);  // the agreement asked for
+    const auto first = [](const OrbitAnswer& answer, const char* name) {
+        return *std::find_if(answer.solvers.begin(), answer.solvers.end(), [&](const auto& run) { return run.name == name; });
+    };
+    EXPECT_EQ(first(cold, "ipopt").start, 0);
+    EXPECT_EQ(first(warm, "ipopt").start, -1);
+    EXPECT_LT(first(warm, "ipopt").iterations, first(cold, "ipopt").iterations);
+    // NLopt, the other witness, knows nothing of it.
+    EXPECT_EQ(first(warm, "nlopt-slsqp").start, first(cold, "nlopt-slsqp").start);
+    EXPECT_EQ(first(warm, "nlopt-slsqp").objective, first(cold, "nlopt-slsqp").objective);
+}
+
+TEST(OrbitSolver, AStartOfAnotherPatternIsMisuse) {
+    const Pattern pattern{20, 48, 16};
+    const double level = 1.5 * least_energy(pattern, 1);
+    EXPECT_THROW((void)solve(pattern, 1, {.level = level, .start = VectorXd::Ones(1)}), std::invalid_argument);
+    EXPECT_THROW((void)solve(pattern, 1, {.level = level, .start = VectorXd::Constant(8, std::nan(""))}), std::invalid_argument);
+}
+
 TEST(OrbitSolver, StarvedSolversStillGiveAnOrbitAndSaySo) {
     OrbitSolverOptions options = usual();
     options.solver.max_iterations = 1;

@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "nsma/study/sweep.hpp"
+#include "nsma/study/sweep_queue.hpp"
 #include "sample.hpp"
 
 namespace nsma {
@@ -40,7 +41,7 @@ protected:
 
     /// Does up to `limit` further units, as nsma sweep does; true when none is left.
     bool work(SweepStore& store, int limit = 1'000'000) {
-        SweepQueue queue(scene, SweepQueue::Order::scene);
+        SweepQueue queue(scene, {}, SweepQueue::Order::scene);
         store.for_each([&queue](const WorkResult& result) { queue.done(result); });
         SweepWorker worker(scene, {});
         for (; limit > 0 && !queue.finished(); --limit) {

@@ -7,6 +7,7 @@
 
 #include "nsma/report/orbit_json.hpp"
 #include "nsma/report/tables.hpp"
+#include "nsma/study/sweep_queue.hpp"
 
 namespace nsma {
 namespace {
@@ -23,7 +24,7 @@ Scene scene_of(double gap, Objective objective) {
 
 /// Every result of a sweep goes over the wire and into rows and back without a change.
 void expect_round_trips(const Scene& scene) {
-    SweepQueue queue(scene, SweepQueue::Order::scene);
+    SweepQueue queue(scene, {}, SweepQueue::Order::scene);
     SweepWorker worker(scene, {});
     int orbits = 0;
     while (!queue.finished()) {
@@ -79,7 +80,7 @@ TEST(RecordRows, UnitsComeBack) {
     const WorkUnit back = unpacked_unit(packed(WorkUnit{123456789012, 3, {0.1, -1e-300}}));
     EXPECT_EQ(back.pattern, 123456789012);
     EXPECT_EQ(back.place, 3);
-    EXPECT_EQ(back.reference, (std::vector<double>{0.1, -1e-300}));
+    EXPECT_EQ(back.before, (std::vector<double>{0.1, -1e-300}));
 }
 
 TEST(RecordRows, OtherBytesAreRefused) {

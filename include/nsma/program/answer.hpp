@@ -28,7 +28,7 @@ enum class Verdict {
 /// One call of one solver from one start.
 struct SolverRun {
     std::string name;      ///< "ipopt", "nlopt-slsqp", "nlopt-auglag"
-    int start = 0;         ///< number of the start, 0-based
+    int start = 0;         ///< number of the start, 0-based; -1: OrbitRequest::start
     std::string status;    ///< the library's own word, e.g. "Solve_Succeeded", "XTOL_REACHED"
     bool usable = false;   ///< after polish, feasible by our own residuals
     double objective = 0;  ///< recomputed after polish; null in reports unless usable

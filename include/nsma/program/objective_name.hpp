@@ -14,6 +14,11 @@ enum class Objective {
     max_energy    ///< -E/E_unit, no energy level; the value is reported as E/E_unit
 };
 
+/// Whether the energy itself is the objective, so that there is no energy level.
+[[nodiscard]] constexpr bool is_extreme(Objective objective) {
+    return objective == Objective::min_energy || objective == Objective::max_energy;
+}
+
 [[nodiscard]] std::string_view name(Objective objective);  ///< "least-shock", "nearest", ...
 [[nodiscard]] std::optional<Objective> objective_named(std::string_view name);
 

@@ -44,19 +44,25 @@ struct OrbitSolverOptions {
     int starts = 8;
     double agreement_tolerance = 1e-6;  ///< relative difference of objectives that still agree
     double raw_violation = 1e-4;        ///< a raw answer further out is a failure of its solver
-    double level_tolerance = 1e-15;     ///< relative; a level this close to an end is the end
+    double level_tolerance = 1e-15;     ///< relative; a level further outside the interval has no orbit
     /// Relaxations spent on the bound of one answer, 0: none. Above 10 unknowns, where each takes
     /// longer, an eighth of them, and shorter ones; above 48 none.
     int bound_nodes = 32;
     SolverOptions solver;
 };
 
+/// Whether Ipopt is the first solver to be asked for a pattern of this kernel dimension, so that OrbitRequest::start
+/// saves time.
+[[nodiscard]] bool ipopt_goes_first(const OrbitSolverOptions& options, int kernel_dimension);
+
 struct OrbitRequest {
     std::optional<double> level;  ///< E/E_unit, > 0; absent: the least-energy orbit
     Objective objective = Objective::least_shock;
     /// `nearest`: window b_0..b_{2N-1} in units u/dt; empty: the least-energy orbit (closed gap:
     /// the least-shock orbit at the level).
-    Eigen::VectorXd reference;
+    Eigen::VectorXd reference{};
+    /// Beta of an orbit of this pattern at a level nearby, from which Ipopt starts; empty: from a point of the level.
+    Eigen::VectorXd start{};
 };
 
 /// Finds, cross-checks and replays orbits of one bar, reusing its solvers. Closed forms first:
@@ -65,8 +71,8 @@ class OrbitSolver {
 public:
     explicit OrbitSolver(const OrbitSolverOptions& options = {});
 
-    /// Throws std::invalid_argument on a level that is not finite and > 0, a reference of a
-    /// wrong size, or a problem made for another gap sign; any other failure is in the answer.
+    /// Throws std::invalid_argument on a level that is not finite and > 0, a reference or start
+    /// of a wrong size, or a problem made for another gap sign; any other failure is in the answer.
     [[nodiscard]] OrbitAnswer solve(const Bar& bar, const PatternProblem& problem,
                                     const OrbitRequest& request);
 

@@ -52,6 +52,8 @@ struct Reduction {
     [[nodiscard]] bool has_free_variables() const;
     /// beta (size m) of a reduced point gamma (size n).
     [[nodiscard]] Eigen::VectorXd beta(const Eigen::VectorXd& gamma) const;
+    /// The inverse, of a beta that is zero off the kept columns.
+    [[nodiscard]] Eigen::VectorXd gamma(const Eigen::VectorXd& beta) const;
 };
 
 /// Reduces COND1-3 of a pattern. O(n_T) per pass plus the kept rows.

@@ -1,0 +1,210 @@
+#include "nsma/study/sweep_queue.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace nsma {
+namespace {
+
+// The first level of a strand starts cold: one in eight. Longer strands would save little more.
+constexpr int warm_strand = 8;
+
+std::size_t at(long index) { return static_cast<std::size_t>(index); }
+
+}  // namespace
+
+SweepQueue::SweepQueue(const Scene& scene, const OrbitSolverOptions& options, Order order)
+    : options_(options), nearest_(scene.objective == Objective::nearest),
+      first_place_(is_extreme(scene.objective) || scene.bar.gap_sign() == 0 ? 1 : 0),
+      last_place_(is_extreme(scene.objective) ? 1 : static_cast<int>(scene.levels.size())) {
+    const auto patterns = patterns_of(scene);
+    state_.assign(patterns.size(), State::left);
+    undecided_ = total_ = static_cast<long>(patterns.size());
+    order_.resize(patterns.size());
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (order == Order::scene) return;
+    std::vector<double> work(patterns.size());
+    for (std::size_t i = 0; i < work.size(); ++i) {
+        work[i] = static_cast<double>(kernel_dimension(patterns[i])) * patterns[i].period_steps();
+    }
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&work](std::uint32_t a, std::uint32_t b) { return work[a] > work[b]; });
+}
+
+// The least-energy orbit is a strand by itself.
+int SweepQueue::strand_of(const Open& open, int place) const {
+    return place == 0 ? 0 : 1 - first_place_ + (place - 1) / open.strand_length;
+}
+
+int SweepQueue::first_place_of(const Open& open, int strand) const {
+    const int level_strand = strand - (1 - first_place_);
+    return level_strand < 0 ? 0 : 1 + level_strand * open.strand_length;
+}
+
+int SweepQueue::end_place_of(const Open& open, int strand) const {
+    return std::min(first_place_of(open, strand + 1), last_place_ + 1);
+}
+
+SweepQueue::State& SweepQueue::state_at(Open& open, int place) const {
+    return open.places.at(static_cast<std::size_t>(place - first_place_));
+}
+
+SweepQueue::Strand& SweepQueue::begin(Open& open, int strand) const {
+    const auto [found, is_new] = open.begun.try_emplace(strand);
+    if (is_new) found->second.next = first_place_of(open, strand);
+    return found->second;
+}
+
+void SweepQueue::sit(int worker, Seat seat) {
+    leave(worker);
+    seats_[worker] = seat;
+    const auto open = open_.find(seat.pattern);
+    if (open == open_.end()) return;
+    ++open->second.workers;
+    unheld_.erase(seat.pattern);
+}
+
+void SweepQueue::leave(int worker) {
+    const auto seat = seats_.find(worker);
+    if (seat == seats_.end()) return;
+    const auto open = open_.find(seat->second.pattern);
+    if (open != open_.end() && --open->second.workers == 0) unheld_.insert(open->first);
+    seats_.erase(seat);
+}
+
+void SweepQueue::decided(const WorkResult& result) {
+    State& state = state_.at(at(result.pattern));
+    if (state == State::done) return;
+    const bool handed = state == State::handed;
+    state = State::done;
+    --undecided_;
+    ++done_;
+    if (result.record->verdict != Verdict::admissible || last_place_ < first_place_) return;
+    total_ += last_place_;
+    Open& open = open_[result.pattern];
+    open.left = last_place_ + 1 - first_place_;
+    open.places.assign(at(open.left), State::left);
+    if (nearest_) {
+        open.strand_length = std::max(last_place_, 1);
+    } else if (ipopt_goes_first(options_, result.record->kernel_dimension)) {
+        open.strand_length = warm_strand;
+    }
+    if (handed) {
+        open.workers = 1;  // who decided it
+    } else {
+        unheld_.insert(result.pattern);
+    }
+}
+
+void SweepQueue::done(const WorkResult& result) {
+    if (result.place < 0) return decided(result);
+    const auto found = open_.find(result.pattern);
+    if (found == open_.end()) return;
+    Open& open = found->second;
+    State& state = state_at(open, result.place);
+    if (state == State::done) return;
+    state = State::done;
+    if (result.place > 0) ++done_;
+    if (--open.left == 0) {
+        unheld_.erase(result.pattern);
+        open_.erase(found);
+        return;
+    }
+    const int number = strand_of(open, result.place);
+    Strand& strand = begin(open, number);
+    strand.next = result.place + 1;
+    if (strand.next == end_place_of(open, number)) {
+        open.begun.erase(number);
+        open.waiting.erase(number);
+        return;
+    }
+    if (result.answer->orbit) strand.before.assign(result.answer->orbit->beta.begin(), result.answer->orbit->beta.end());
+    open.waiting.insert(number);
+}
+
+std::optional<WorkUnit> SweepQueue::take(long pattern, int worker) {
+    Open& open = open_.at(pattern);
+    int number = -1;
+    if (!open.waiting.empty()) {
+        // Its own strand before another.
+        const auto seat = seats_.find(worker);
+        const bool own = seat != seats_.end() && seat->second.pattern == pattern && seat->second.place >= 0;
+        const auto first = own ? open.waiting.find(strand_of(open, seat->second.place)) : open.waiting.end();
+        number = first != open.waiting.end() ? *first : *open.waiting.begin();
+        open.waiting.erase(number);
+    } else {
+        const int end = strands(open);
+        while (open.fresh < end && state_at(open, first_place_of(open, open.fresh)) != State::left) ++open.fresh;
+        if (open.fresh == end) return std::nullopt;
+        number = open.fresh++;
+    }
+    const Strand& strand = begin(open, number);
+    state_at(open, strand.next) = State::handed;
+    WorkUnit unit{pattern, strand.next, strand.before};
+    sit(worker, {pattern, unit.place});
+    return unit;
+}
+
+std::optional<WorkUnit> SweepQueue::decide(int worker) {
+    long pattern = -1;
+    while (pattern < 0 && !returned_.empty()) {
+        if (state_[at(returned_.back())] == State::left) pattern = returned_.back();
+        returned_.pop_back();
+    }
+    if (pattern < 0) {
+        while (cursor_ < order_.size() && state_[order_[cursor_]] != State::left) ++cursor_;
+        if (cursor_ == order_.size()) return std::nullopt;
+        pattern = order_[cursor_];
+    }
+    state_[at(pattern)] = State::handed;
+    sit(worker, {pattern, -1});
+    return WorkUnit{pattern, -1, {}};
+}
+
+// With the pattern that has most strands left.
+std::optional<WorkUnit> SweepQueue::help(int worker) {
+    for (;;) {
+        long of = -1;
+        std::size_t most = 0;
+        for (const auto& [pattern, open] : open_) {
+            const std::size_t strands_left = at(strands(open) - open.fresh) + open.waiting.size();
+            if (strands_left > most) {
+                most = strands_left;
+                of = pattern;
+            }
+        }
+        if (of < 0) return std::nullopt;
+        if (auto unit = take(of, worker)) return unit;  // else all that were counted are done, and now passed over
+    }
+}
+
+std::optional<WorkUnit> SweepQueue::next(int worker) {
+    const auto seat = seats_.find(worker);
+    if (seat != seats_.end() && open_.contains(seat->second.pattern)) {
+        if (auto unit = take(seat->second.pattern, worker)) return unit;
+    }
+    if (!unheld_.empty()) {
+        if (auto unit = take(*unheld_.begin(), worker)) return unit;
+    }
+    if (auto unit = decide(worker)) return unit;
+    return help(worker);
+}
+
+void SweepQueue::lost(int worker) {
+    const auto found = seats_.find(worker);
+    if (found == seats_.end()) return;
+    const Seat seat = found->second;
+    leave(worker);
+    if (seat.place < 0) {
+        if (state_.at(at(seat.pattern)) != State::handed) return;
+        state_[at(seat.pattern)] = State::left;
+        returned_.push_back(seat.pattern);
+        return;
+    }
+    const auto open = open_.find(seat.pattern);
+    if (open == open_.end() || state_at(open->second, seat.place) != State::handed) return;
+    state_at(open->second, seat.place) = State::left;
+    open->second.waiting.insert(strand_of(open->second, seat.place));
+}
+
+}  // namespace nsma
