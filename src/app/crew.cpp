@@ -1,5 +1,6 @@
 #include "crew.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
@@ -17,8 +18,23 @@ namespace {
 
 enum Tag { tag_unit = 1, tag_result, tag_dismissed, tag_goodbye };
 constexpr int child_worker = 0;  // the child of rank 0; rank r is worker r
-// Long enough to leave the processor to the solvers, short against a solve.
-constexpr std::chrono::microseconds pause{100};
+
+// The wait between two looks for a message. It grows while none comes: where results come quickly they are answered at
+// once, where solves are long the processor is left to them. At most half a millisecond is lost, at a look's cost of some
+// ten microseconds.
+class Pause {
+public:
+    [[nodiscard]] std::chrono::microseconds next() {
+        const auto now = length_;
+        length_ = std::min(2 * length_, longest);
+        return now;
+    }
+    void over() { length_ = shortest; }
+
+private:
+    static constexpr std::chrono::microseconds shortest{20}, longest{500};
+    std::chrono::microseconds length_ = shortest;
+};
 
 // A number of the environment that a launcher of MPI programs set, or -1.
 int launched(const char* open_mpi, const char* slurm) {
@@ -103,6 +119,7 @@ struct Crew::Implementation {
     int in = -1;   // from the child, or from rank 0
     int out = -1;  // to it
     bool dismissed = false;
+    Pause pause;
 
     void split() {
         int down[2], up[2];
@@ -146,7 +163,7 @@ Crew::~Crew() {
         self.drop_child();
         for (int left = self.ranks - 1; left > 0;) {
             const auto received = receive();
-            if (!received) std::this_thread::sleep_for(pause);
+            if (!received) std::this_thread::sleep_for(self.pause.next());
             if (received && received->tag == tag_goodbye) --left;
         }
     } else {
@@ -174,14 +191,18 @@ void Crew::hand(int worker, const std::string& bytes) {
 
 std::optional<Crew::Message> Crew::wait() {
     auto& self = *implementation_;
-    if (auto received = receive()) return Message{received->rank, false, std::move(received->bytes)};
+    if (auto received = receive()) {
+        self.pause.over();
+        return Message{received->rank, false, std::move(received->bytes)};
+    }
     if (self.child <= 0) {
-        std::this_thread::sleep_for(pause);
+        std::this_thread::sleep_for(self.pause.next());
         return std::nullopt;
     }
     pollfd file{self.in, POLLIN, 0};
-    const timespec moment{0, std::chrono::nanoseconds(pause).count()};
+    const timespec moment{0, std::chrono::nanoseconds(self.pause.next()).count()};
     if (ppoll(&file, 1, &moment, nullptr) <= 0) return std::nullopt;
+    self.pause.over();
     if (auto bytes = read_message(self.in)) return Message{child_worker, false, std::move(*bytes)};
     self.drop_child();
     return Message{child_worker, true, {}};
@@ -193,9 +214,10 @@ std::optional<std::string> Crew::next() {
     for (;;) {
         auto received = receive();
         if (!received) {
-            std::this_thread::sleep_for(pause);
+            std::this_thread::sleep_for(self.pause.next());
             continue;
         }
+        self.pause.over();
         if (received->tag == tag_unit) return std::move(received->bytes);
         self.dismissed = true;
         return std::nullopt;

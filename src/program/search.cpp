@@ -79,8 +79,6 @@ void Search::run() {
     if (with_ipopt_) search_with_ipopt();
     if (with_nlopt_ && with_ipopt_) {
         if (ipopt_.usable && !not_worse(nlopt_, ipopt_)) search_with_nlopt();
-        // Where one still holds a worse optimum it is asked about the better one: does it, started off to the side, come
-        // to the same point?
         ask(nlopt_, ipopt_, "ipopt");
         ask(ipopt_, nlopt_, "nlopt");
     }
@@ -97,11 +95,11 @@ std::optional<Eigen::VectorXd> Search::start(int k) const {
 
 int Search::ipopt_start() const { return warm_ ? warm_start : 0; }
 
-// A point on the level a tenth of the way from `gamma` to start k.
-std::optional<Eigen::VectorXd> Search::aside_of(const Eigen::VectorXd& gamma, int k) const {
+// A point on the level a part of the way from `gamma` to start k.
+std::optional<Eigen::VectorXd> Search::aside_of(const Eigen::VectorXd& gamma, double part, int k) const {
     const auto other = start(k);
     if (!other) return std::nullopt;
-    Eigen::VectorXd aside = 0.9 * gamma + 0.1 * *other;
+    Eigen::VectorXd aside = (1 - part) * gamma + part * *other;
     return level_ ? level_->reach(aside) : std::optional(std::move(aside));
 }
 
@@ -125,18 +123,25 @@ void Search::search_with_ipopt() {
     }
 }
 
+// Does the solver, started off to the side of an optimum better than its own, come to it?
 void Search::ask(const Best& better, Best& worse, const char* solver) {
-    if (!better.usable || not_worse(worse, better)) return;
-    const int number = next_++;
-    if (const auto aside = aside_of(better.candidate.gamma, number)) attempt(*aside, solver, number, worse);
+    for (const double part : {0.1, 0.03, 0.01}) {
+        if (!better.usable || not_worse(worse, better)) return;
+        const int number = next_++;
+        if (const auto aside = aside_of(better.candidate.gamma, part, number)) attempt(*aside, solver, number, worse);
+    }
 }
 
 // Where the Lagrangian leaves a gap: bounds the objective by relaxations, whose solutions are starts that find better
-// optima; the solvers are then asked about those. The bound is found once and holds for whatever comes later.
+// optima. Solvers used so far are asked about a best orbit that is not theirs. The bound is found once and holds for whatever comes later.
 void Search::settle() {
+    if (ranked().empty()) return;
+    if (!bounded_ && !ranked().front()->optimality.global) relax(*ranked().front());
     const auto found_so_far = ranked();
-    if (found_so_far.empty()) return;
-    if (!bounded_ && !found_so_far.front()->optimality.global) relax(*found_so_far.front());
+    if (unsolved(found_so_far.front())) {
+        if (!ipopt_.run.name.empty()) ask(*found_so_far.front(), ipopt_, "ipopt");
+        if (!nlopt_.run.name.empty()) ask(*found_so_far.front(), nlopt_, "nlopt");
+    }
     double value = product_bound_.value_or(-infinity);
     if (bounded_) value = std::max(value, bounded_->value);
     for (const Best* best : found_so_far) {  // the Lagrangian's bounds are of the program, not of the point
@@ -173,11 +178,7 @@ void Search::relax(const Best& best) {
         return objective;
     };
     bounded_ = conic_bound(program_.program, objective, bounding);
-    if (better) {
-        relaxed_ = found(*better, "relaxation");
-        if (!ipopt_.run.name.empty()) ask(relaxed_, ipopt_, "ipopt");
-        if (!nlopt_.run.name.empty()) ask(relaxed_, nlopt_, "nlopt");
-    }
+    if (better) relaxed_ = found(*better, "relaxation");
 }
 
 SolverOutcome Search::call(const std::string& solver, const Eigen::VectorXd& x) {

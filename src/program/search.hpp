@@ -65,7 +65,7 @@ public:
 private:
     [[nodiscard]] std::optional<Eigen::VectorXd> start(int k) const;
     [[nodiscard]] int ipopt_start() const;  // number of its first one
-    [[nodiscard]] std::optional<Eigen::VectorXd> aside_of(const Eigen::VectorXd& gamma, int k) const;
+    [[nodiscard]] std::optional<Eigen::VectorXd> aside_of(const Eigen::VectorXd& gamma, double part, int k) const;
     void search_with_nlopt();
     void search_with_ipopt();
     void ask(const Best& better, Best& worse, const char* solver);
