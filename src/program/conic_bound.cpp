@@ -63,49 +63,61 @@ Homogeneous homogenise(const Program& program) {
     return form;
 }
 
+// In the eigenvectors of V'V, where the linear system of each step is a division by elements; traces and semidefinite
+// matrices look the same there.
 class Splitting {
 public:
-    explicit Splitting(const Homogeneous& form) : form_(form), n_(form.cost.rows()) {
+    explicit Splitting(const Homogeneous& form) : contact_square_(form.contact_square), n_(form.cost.rows()), spectrum_(n_) {
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(form.generators.transpose() * form.generators);
         basis_ = gram.eigenvectors();
+        cost_ = basis_.transpose() * form.cost * basis_;
+        generators_ = form.generators * basis_;
         const Eigen::VectorXd values = gram.eigenvalues().cwiseMax(0.0);
         weights_ = (1.0 + (values * values.transpose()).array()).inverse().matrix();
-        contact_matrix_ = form.contact.size() > 0 ? Eigen::MatrixXd(form.contact * form.contact.transpose())
+        if (form.contact.size() > 0) contact_ = basis_.transpose() * form.contact;
+        contact_matrix_ = form.contact.size() > 0 ? Eigen::MatrixXd(contact_ * contact_.transpose())
                                                   : Eigen::MatrixXd::Zero(n_, n_);
-        solved_identity_ = solve(Eigen::MatrixXd::Identity(n_, n_));
-        solved_contact_ = solve(contact_matrix_);
-        solved_cost_ = solve(form.cost);
+        solved_contact_ = contact_matrix_.cwiseProduct(weights_);
+        solved_cost_ = cost_.cwiseProduct(weights_);
         const auto p = form.generators.rows();
         psd_ = Eigen::MatrixXd::Identity(n_, n_) / static_cast<double>(n_);
-        nonnegative_ = (form.generators * psd_ * form.generators.transpose()).cwiseMax(0.0);
+        nonnegative_ = (generators_ * psd_ * generators_.transpose()).cwiseMax(0.0);
         psd_dual_ = Eigen::MatrixXd::Zero(n_, n_);
         nonnegative_dual_ = Eigen::MatrixXd::Zero(p, p);
         rho_ = std::max(form.cost.norm(), 1e-12);
     }
 
     void iterate() {
-        const auto& v = form_.generators;
-        const Eigen::MatrixXd right =
-            psd_ - psd_dual_ + v.transpose() * (nonnegative_ - nonnegative_dual_) * v;
-        const Eigen::MatrixXd free = solve(right) - solved_cost_ / rho_;
-        fit_equalities(free);
-        const Eigen::MatrixXd z = free - (mu_ * solved_identity_ + nu_ * solved_contact_) / rho_;
-        const Eigen::MatrixXd lifted = v * z * v.transpose();
+        difference_ = nonnegative_ - nonnegative_dual_;
+        half_.noalias() = difference_ * generators_;
+        z_ = psd_ - psd_dual_;
+        z_.noalias() += generators_.transpose() * half_;
+        z_ = z_.cwiseProduct(weights_) - solved_cost_ / rho_;
+        fit_equalities();
+        z_ -= (nu_ / rho_) * solved_contact_;
+        z_.diagonal() -= (mu_ / rho_) * weights_.diagonal();
+        half_.noalias() = generators_ * z_;
+        lifted_.noalias() = half_ * generators_.transpose();
 
-        const Eigen::MatrixXd psd_mix = over_relaxation * z + (1 - over_relaxation) * psd_;
-        const Eigen::MatrixXd mix = over_relaxation * lifted + (1 - over_relaxation) * nonnegative_;
-        const Eigen::MatrixXd shifted = psd_mix + psd_dual_;
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(shifted);
-        const Eigen::MatrixXd last_psd = psd_;
-        psd_ = spectrum.eigenvectors() * spectrum.eigenvalues().cwiseMax(0.0).asDiagonal() *
-               spectrum.eigenvectors().transpose();
-        psd_dual_ = shifted - psd_;
-        const Eigen::MatrixXd last_nonnegative = nonnegative_;
-        const Eigen::MatrixXd sum = mix + nonnegative_dual_;
-        nonnegative_ = sum.cwiseMax(0.0);
-        nonnegative_dual_ = sum - nonnegative_;
-        primal_ = std::hypot((z - psd_).norm(), (lifted - nonnegative_).norm());
-        dual_ = std::hypot((psd_ - last_psd).norm(), (nonnegative_ - last_nonnegative).norm());
+        shifted_ = over_relaxation * z_ + (1 - over_relaxation) * psd_ + psd_dual_;
+        last_psd_.swap(psd_);
+        project();
+        psd_dual_ = shifted_ - psd_;
+        double primal = (z_ - psd_).squaredNorm();
+        double dual = (psd_ - last_psd_).squaredNorm();
+        for (Eigen::Index k = 0; k < lifted_.size(); ++k) {
+            double& kept = nonnegative_.data()[k];
+            double& multiplier = nonnegative_dual_.data()[k];
+            const double last = kept;
+            const double lifted = lifted_.data()[k];
+            const double sum = over_relaxation * lifted + (1 - over_relaxation) * last + multiplier;
+            kept = std::max(sum, 0.0);
+            multiplier = sum - kept;
+            primal += (lifted - kept) * (lifted - kept);
+            dual += (kept - last) * (kept - last);
+        }
+        primal_ = std::sqrt(primal);
+        dual_ = std::sqrt(dual);
     }
 
     // Keeps primal and dual residuals of one size; scaled multipliers follow.
@@ -120,7 +132,7 @@ public:
 
     // Mean of the relaxed solution, of which Z is the moment matrix; needs COND2.
     [[nodiscard]] Eigen::VectorXd mean() const {
-        return psd_ * form_.contact / std::sqrt(form_.contact_square);
+        return basis_ * (psd_ * contact_) / std::sqrt(contact_square_);
     }
 
     // Where to cut: with COND2 the relaxed solution is a moment matrix whose mean is Z a/e; the
@@ -128,34 +140,34 @@ public:
     // cut at zero. The normal h of the cut h . x = 0; size 0 when nothing is left to cut.
     [[nodiscard]] Eigen::VectorXd cut(const std::vector<Eigen::Index>& unsigned_unknowns) const {
         Eigen::VectorXd normal = Eigen::VectorXd::Zero(n_);
-        if (form_.contact_square > 0) {
-            const Eigen::VectorXd mean = psd_ * form_.contact / form_.contact_square;  // over a . x
+        const Eigen::MatrixXd moments = basis_ * psd_ * basis_.transpose();
+        if (contact_square_ > 0) {
+            const Eigen::VectorXd mean = basis_ * (psd_ * contact_) / contact_square_;  // over a . x
             Eigen::Index widest = 0;
-            (psd_.diagonal() - mean.cwiseAbs2() * form_.contact_square).maxCoeff(&widest);
+            (moments.diagonal() - mean.cwiseAbs2() * contact_square_).maxCoeff(&widest);
             normal[widest] = 1.0;
-            normal -= mean[widest] * form_.contact;
+            normal -= mean[widest] * (basis_ * contact_);
             return normal.normalized();
         }
         if (unsigned_unknowns.empty()) return {};
         normal[*std::max_element(unsigned_unknowns.begin(), unsigned_unknowns.end(), [&](auto i, auto j) {
-            return psd_(i, i) < psd_(j, j);
+            return moments(i, i) < moments(j, j);
         })] = 1.0;
         return normal;
     }
 
     // Objective bound from the multipliers at hand: valid for any of them.
     [[nodiscard]] double bound() const {
-        const auto& v = form_.generators;
         const Eigen::MatrixXd products = (-rho_) * nonnegative_dual_.cwiseMin(0.0);
-        const Eigen::MatrixXd fixed = form_.cost - v.transpose() * products * v;
+        const Eigen::MatrixXd fixed = cost_ - generators_.transpose() * products * generators_;
         const auto value = [&](double nu) {
             const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(fixed + nu * contact_matrix_,
                                                                           Eigen::EigenvaluesOnly);
             const double scale = spectrum.eigenvalues().cwiseAbs().maxCoeff();
             const double rounding = 1e-14 * scale;  // eigenvalues are good to a few units of n eps
-            return spectrum.eigenvalues()[0] - rounding - nu * form_.contact_square;
+            return spectrum.eigenvalues()[0] - rounding - nu * contact_square_;
         };
-        if (form_.contact.size() == 0) return value(0);
+        if (contact_.size() == 0) return value(0);
         // Concave in nu: a few steps of golden section about the multiplier found.
         const double width = 0.05 * std::abs(nu_) + 1e-3 * rho_;
         double lo = nu_ - width;
@@ -183,33 +195,46 @@ public:
     }
 
 private:
-    // Inverse of Z -> Z + S Z S with S = V'V.
-    [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const {
-        const Eigen::MatrixXd inside = (basis_.transpose() * right * basis_).cwiseProduct(weights_);
-        return basis_ * inside * basis_.transpose();
+    // The nearest semidefinite matrix, by whichever sign has fewer eigenvalues.
+    void project() {
+        spectrum_.compute(shifted_);
+        const auto& values = spectrum_.eigenvalues();
+        const Eigen::Index below = std::count_if(values.begin(), values.end(), [](double value) { return value < 0; });
+        if (2 * below < n_) {
+            scaled_ = spectrum_.eigenvectors().leftCols(below) * (-values.head(below)).cwiseSqrt().asDiagonal();
+            psd_ = shifted_;
+        } else {
+            scaled_ = spectrum_.eigenvectors().rightCols(n_ - below) * values.tail(n_ - below).cwiseSqrt().asDiagonal();
+            psd_.setZero(n_, n_);
+        }
+        psd_.noalias() += scaled_ * scaled_.transpose();
     }
 
     // Multipliers mu, nu with which trace Z = 1 and a' Z a = e^2.
-    void fit_equalities(const Eigen::MatrixXd& free) {
-        const double trace = rho_ * (free.trace() - 1.0);
-        if (form_.contact.size() == 0) {
-            mu_ = trace / solved_identity_.trace();
+    void fit_equalities() {
+        const double trace = rho_ * (z_.trace() - 1.0);
+        if (contact_.size() == 0) {
+            mu_ = trace / weights_.trace();
             return;
         }
-        const double contact = rho_ * ((free.cwiseProduct(contact_matrix_)).sum() - form_.contact_square);
+        const double contact = rho_ * (contact_.dot(z_ * contact_) - contact_square_);
         Eigen::Matrix2d system;
-        system << solved_identity_.trace(), solved_contact_.trace(), solved_contact_.trace(),
+        system << weights_.trace(), solved_contact_.trace(), solved_contact_.trace(),
             solved_contact_.cwiseProduct(contact_matrix_).sum();
         const Eigen::Vector2d solution = system.inverse() * Eigen::Vector2d(trace, contact);
         mu_ = solution[0];
         nu_ = solution[1];
     }
 
-    const Homogeneous& form_;
+    double contact_square_;
     Eigen::Index n_;
-    Eigen::MatrixXd basis_, weights_, contact_matrix_;
-    Eigen::MatrixXd solved_identity_, solved_contact_, solved_cost_;
+    Eigen::MatrixXd basis_, cost_, generators_, weights_, contact_matrix_;
+    Eigen::VectorXd contact_;
+    Eigen::MatrixXd solved_contact_, solved_cost_;
     Eigen::MatrixXd psd_, psd_dual_, nonnegative_, nonnegative_dual_;
+    // Of one step, kept for their memory.
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum_;
+    Eigen::MatrixXd difference_, half_, z_, lifted_, shifted_, last_psd_, scaled_;
     double rho_ = 1;
     double mu_ = 0;
     double nu_ = 0;
