@@ -12,8 +12,8 @@
 #include "nsma/report/scene_file.hpp"
 #include "nsma/report/sweep_store.hpp"
 #include "nsma/report/tables.hpp"
-#include "nsma/study/record_rows.hpp"
 #include "nsma/study/sweep_queue.hpp"
+#include "nsma/study/work_messages.hpp"
 
 namespace nsma::app {
 namespace {
@@ -37,14 +37,14 @@ std::string options_text(const OrbitSolverOptions& options) {
 // A process that only computes.
 void help(Crew& crew, const Scene& scene, const OrbitSolverOptions& options) {
     SweepWorker worker(scene, options);
-    while (const auto unit = crew.next()) crew.report(packed(worker.run(unpacked_unit(*unit))));
+    while (const auto units = crew.next()) crew.report(packed(worker.run(unpacked_units(*units))));
 }
 
 // The number of this process among the workers of a queue; the crew's are 0, 1, ...
 constexpr int own_worker = -2;
 
 // Hands out units and takes in results until all is done, stop is asked or nobody is left.
-void share(Crew& crew, const Scene& scene, SweepQueue& queue, const std::function<void(const WorkResult&)>& keep,
+void share(Crew& crew, const Scene& scene, SweepQueue& queue, const std::function<void(const std::vector<WorkResult>&)>& keep,
            const std::atomic<bool>& stop) {
     std::set<int> idle;
     for (int worker = 0; worker < crew.workers(); ++worker) {
@@ -53,9 +53,9 @@ void share(Crew& crew, const Scene& scene, SweepQueue& queue, const std::functio
     std::size_t present = idle.size();
     while (present > 0) {
         for (auto worker = idle.begin(); worker != idle.end() && !stop.load();) {
-            const auto unit = queue.next(*worker);
-            if (!unit) break;
-            crew.hand(*worker, packed(*unit));
+            const auto units = queue.next(*worker);
+            if (units.empty()) break;
+            crew.hand(*worker, packed(units));
             worker = idle.erase(worker);
         }
         // What is in hand is kept also after stop.
@@ -67,7 +67,7 @@ void share(Crew& crew, const Scene& scene, SweepQueue& queue, const std::functio
             --present;
             continue;
         }
-        keep(unpacked_result(message->bytes, scene.bar));
+        keep(unpacked_results(message->bytes, scene.bar));
         idle.insert(message->worker);
     }
 }
@@ -88,9 +88,9 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
     const auto begin = std::chrono::steady_clock::now();
     {
         Progress progress("sweep", arguments.quiet);
-        const auto keep = [&](const WorkResult& result) {
-            store.put(result);
-            queue.done(result);
+        const auto keep = [&](const std::vector<WorkResult>& results) {
+            store.put(results);
+            for (const WorkResult& result : results) queue.done(result);
             progress.show(queue.done_count(), queue.total_count());
         };
         if (crew.workers() > 0) {
@@ -99,9 +99,9 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
         // Alone, or with everyone else gone.
         SweepWorker worker(scene, arguments.solver);
         while (!queue.finished() && !stop.load()) {
-            const auto unit = queue.next(own_worker);
-            if (!unit) break;
-            keep(worker.run(*unit));
+            const auto units = queue.next(own_worker);
+            if (units.empty()) break;
+            keep(worker.run(units));
         }
     }
     if (!store.complete()) {

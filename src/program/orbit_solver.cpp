@@ -20,6 +20,15 @@ constexpr double tie_tolerance = 1e-13;
 // Distance beyond a row, relative to the size of the point, that rounding explains.
 constexpr double row_rounding = 1e-13;
 
+bool below(const EnergyInterval& interval, double level, const OrbitSolverOptions& options) {
+    return level < *interval.least * (1 - options.level_tolerance);
+}
+
+// Above all energies attained.
+bool above(const EnergyInterval& interval, double level, const OrbitSolverOptions& options) {
+    return !interval.unbounded && !(interval.greatest && level <= *interval.greatest * (1 + options.level_tolerance));
+}
+
 bool admissible_point(const Reduction& reduction, const Eigen::VectorXd& gamma) {
     const double tolerance = row_rounding * gamma.lpNorm<1>();
     for (Eigen::Index j = 0; j < gamma.size(); ++j) {
@@ -85,13 +94,13 @@ private:
             return false;
         }
         const double level = *request_.level;
-        if (level < *answer_.interval.least * (1 - options_.level_tolerance)) {
+        if (below(answer_.interval, level, options_)) {
             answer_.verdict = Verdict::below;
             answer_.reason = "level below the least energy of the pattern";
             return false;
         }
-        const auto& [least, greatest, bound, unbounded, least_exact, greatest_exact] = answer_.interval;
-        if (unbounded || (greatest && level <= *greatest * (1 + options_.level_tolerance))) return true;
+        if (!above(answer_.interval, level, options_)) return true;
+        const auto& bound = answer_.interval.bound;
         answer_.verdict_proved = bound.has_value() && level > *bound * (1 + options_.level_tolerance);
         answer_.verdict = answer_.verdict_proved ? Verdict::above : Verdict::undecided;
         answer_.reason = answer_.verdict_proved
@@ -354,6 +363,10 @@ OrbitAnswer OrbitSolver::solve(const Bar& bar, const PatternProblem& problem,
     OrbitAnswer answer = Solve(options_, ipopt_, bar, problem, request).run();
     answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return answer;
+}
+
+bool OrbitSolver::outside(const EnergyInterval& interval, double level) const {
+    return below(interval, level, options_) || above(interval, level, options_);
 }
 
 Eigen::VectorXd reference_window(const Orbit& orbit) {

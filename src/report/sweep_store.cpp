@@ -327,12 +327,12 @@ void SweepStore::add_seconds(double more) {
     implementation_->set_info("seconds", fmt::format("{}", seconds() + more));
 }
 
-void SweepStore::put(const WorkResult& result) {
+void SweepStore::put(const std::vector<WorkResult>& results) {
     auto& self = *implementation_;
     self.guarded("written", [&] {
         Implementation::run(self.begin);
         try {
-            self.put(result);
+            for (const WorkResult& result : results) self.put(result);
             Implementation::run(self.commit);
         } catch (...) {
             // What was committed before stays valid; a journal cut short is ignored when read.

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -222,79 +221,6 @@ private:
     bool skip_ = false;  // in a part that is absent
 };
 
-class Bytes {
-public:
-    std::string text;
-    template <class Number>
-    void number(Number value) {
-        text.append(reinterpret_cast<const char*>(&value), sizeof value);
-    }
-    void row(const Row& row) {
-        number(static_cast<std::uint64_t>(row.size()));
-        for (const Value& value : row) {
-            text.push_back(static_cast<char>(value.index()));
-            if (const auto* whole = std::get_if<std::int64_t>(&value)) number(*whole);
-            if (const auto* real = std::get_if<double>(&value)) number(*real);
-            if (const auto* word = std::get_if<std::string>(&value)) {
-                number(static_cast<std::uint64_t>(word->size()));
-                text += *word;
-            }
-        }
-    }
-    void numbers(const std::vector<double>& values) {
-        number(static_cast<std::uint64_t>(values.size()));
-        for (const double value : values) number(value);
-    }
-};
-
-class Unpacker {
-public:
-    explicit Unpacker(std::string_view bytes) : left_(bytes) {}
-
-    template <class Number>
-    Number number() {
-        Number value;
-        std::memcpy(&value, take(sizeof value).data(), sizeof value);
-        return value;
-    }
-    Row row() {
-        Row row;
-        for (auto count = size(1); count > 0; --count) {
-            switch (take(1)[0]) {
-                case 0: row.emplace_back(); break;
-                case 1: row.emplace_back(number<std::int64_t>()); break;
-                case 2: row.emplace_back(number<double>()); break;
-                case 3: row.emplace_back(std::string(take(size(1)))); break;
-                default: fail();
-            }
-        }
-        return row;
-    }
-    std::vector<double> numbers() {
-        std::vector<double> values(size(sizeof(double)));
-        for (double& value : values) value = number<double>();
-        return values;
-    }
-    void end() const {
-        if (!left_.empty()) fail();
-    }
-    std::size_t size(std::size_t each) {
-        const auto count = number<std::uint64_t>();
-        if (count > left_.size() / each) fail();
-        return static_cast<std::size_t>(count);
-    }
-
-private:
-    [[noreturn]] static void fail() { throw std::invalid_argument("message: expected a packed record, got other bytes"); }
-    std::string_view take(std::size_t size) {
-        if (size > left_.size()) fail();
-        const auto part = left_.substr(0, size);
-        left_.remove_prefix(size);
-        return part;
-    }
-    std::string_view left_;
-};
-
 }  // namespace
 
 std::vector<std::string> pattern_columns() {
@@ -365,56 +291,6 @@ OrbitAnswer orbit_answer_of(const ResultRows& rows, const Bar& bar) {
                                                                     static_cast<Eigen::Index>(rows.beta.size())));
     }
     return answer;
-}
-
-std::string packed(const WorkUnit& unit) {
-    Bytes bytes;
-    bytes.number(static_cast<std::int64_t>(unit.pattern));
-    bytes.number(static_cast<std::int64_t>(unit.place));
-    bytes.numbers(unit.before);
-    return std::move(bytes.text);
-}
-
-WorkUnit unpacked_unit(std::string_view text) {
-    Unpacker bytes(text);
-    WorkUnit unit;
-    unit.pattern = static_cast<long>(bytes.number<std::int64_t>());
-    unit.place = static_cast<int>(bytes.number<std::int64_t>());
-    unit.before = bytes.numbers();
-    bytes.end();
-    return unit;
-}
-
-std::string packed(const WorkResult& result) {
-    Bytes bytes;
-    const ResultRows rows = rows_of(result);
-    bytes.number(static_cast<std::int64_t>(result.pattern));
-    bytes.number(static_cast<std::int64_t>(result.place));
-    bytes.row(rows.pattern);
-    bytes.row(rows.answer);
-    bytes.number(static_cast<std::uint64_t>(rows.runs.size()));
-    for (const Row& run : rows.runs) bytes.row(run);
-    bytes.numbers(rows.beta);
-    return std::move(bytes.text);
-}
-
-WorkResult unpacked_result(std::string_view text, const Bar& bar) {
-    Unpacker bytes(text);
-    WorkResult result;
-    result.pattern = static_cast<long>(bytes.number<std::int64_t>());
-    result.place = static_cast<int>(bytes.number<std::int64_t>());
-    ResultRows rows;
-    rows.pattern = bytes.row();
-    rows.answer = bytes.row();
-    for (auto runs = bytes.size(1); runs > 0; --runs) rows.runs.push_back(bytes.row());
-    rows.beta = bytes.numbers();
-    bytes.end();
-    if (result.place < 0) {
-        result.record = pattern_record_of(rows.pattern);
-    } else {
-        result.answer = orbit_answer_of(rows, bar);
-    }
-    return result;
 }
 
 }  // namespace nsma

@@ -17,7 +17,7 @@ SweepSummary sweep(const Scene& scene, const OrbitSolverOptions& options, SweepS
             summary.interrupted = true;
             break;
         }
-        const WorkResult result = worker.run(*queue.next(0));
+        const WorkResult result = worker.run(queue.next(0).at(0));  // one at a time: the scene's order
         const long before = queue.done_count();
         queue.done(result);
         if (result.record) {

@@ -8,6 +8,10 @@ namespace {
 
 // The first level of a strand starts cold: one in eight. Longer strands would save little more.
 constexpr int warm_strand = 8;
+// Verdicts in one message: about a millisecond of them, several times what rank 0 needs to hand them out and to store
+// them. A verdict takes some 50 us, and more with m n_T.
+constexpr double batch_work = 20'000;
+constexpr double verdict_work = 1'000;
 
 std::size_t at(long index) { return static_cast<std::size_t>(index); }
 
@@ -22,13 +26,21 @@ SweepQueue::SweepQueue(const Scene& scene, const OrbitSolverOptions& options, Or
     undecided_ = total_ = static_cast<long>(patterns.size());
     order_.resize(patterns.size());
     std::iota(order_.begin(), order_.end(), 0U);
-    if (order == Order::scene) return;
-    std::vector<double> work(patterns.size());
-    for (std::size_t i = 0; i < work.size(); ++i) {
-        work[i] = static_cast<double>(kernel_dimension(patterns[i])) * patterns[i].period_steps();
+    const auto work = [&patterns](std::uint32_t i) {
+        return static_cast<double>(kernel_dimension(patterns[i])) * patterns[i].period_steps();
+    };
+    if (order == Order::longest_first) {
+        std::vector<double> works(order_.size());
+        std::transform(order_.begin(), order_.end(), works.begin(), work);
+        std::stable_sort(order_.begin(), order_.end(), [&works](auto a, auto b) { return works[a] > works[b]; });
     }
-    std::stable_sort(order_.begin(), order_.end(),
-                     [&work](std::uint32_t a, std::uint32_t b) { return work[a] > work[b]; });
+    double total = 0;
+    for (std::uint32_t i = 0; i < order_.size(); ++i) {
+        total += verdict_work + work(order_[i]);
+        if (order == Order::longest_first && total < batch_work && i + 1 < order_.size()) continue;
+        batches_.push_back(i + 1);
+        total = 0;
+    }
 }
 
 // The least-energy orbit is a strand by itself.
@@ -75,7 +87,6 @@ void SweepQueue::leave(int worker) {
 void SweepQueue::decided(const WorkResult& result) {
     State& state = state_.at(at(result.pattern));
     if (state == State::done) return;
-    const bool handed = state == State::handed;
     state = State::done;
     --undecided_;
     ++done_;
@@ -89,11 +100,9 @@ void SweepQueue::decided(const WorkResult& result) {
     } else if (ipopt_goes_first(options_, result.record->kernel_dimension)) {
         open.strand_length = warm_strand;
     }
-    if (handed) {
-        open.workers = 1;  // who decided it
-    } else {
-        unheld_.insert(result.pattern);
-    }
+    open.workers = static_cast<int>(
+        std::count_if(seats_.begin(), seats_.end(), [&](const auto& seat) { return seat.second.pattern == result.pattern; }));
+    if (open.workers == 0) unheld_.insert(result.pattern);
 }
 
 void SweepQueue::done(const WorkResult& result) {
@@ -103,6 +112,7 @@ void SweepQueue::done(const WorkResult& result) {
     Open& open = found->second;
     State& state = state_at(open, result.place);
     if (state == State::done) return;
+    const bool handed = state == State::handed;
     state = State::done;
     if (result.place > 0) ++done_;
     if (--open.left == 0) {
@@ -112,14 +122,16 @@ void SweepQueue::done(const WorkResult& result) {
     }
     const int number = strand_of(open, result.place);
     Strand& strand = begin(open, number);
-    strand.next = result.place + 1;
-    if (strand.next == end_place_of(open, number)) {
+    if (handed) strand.handed = false;
+    const int end = end_place_of(open, number);
+    while (strand.next < end && state_at(open, strand.next) == State::done) ++strand.next;
+    if (strand.next == end) {
         open.begun.erase(number);
         open.waiting.erase(number);
         return;
     }
     if (result.answer->orbit) strand.before.assign(result.answer->orbit->beta.begin(), result.answer->orbit->beta.end());
-    open.waiting.insert(number);
+    if (!strand.handed) open.waiting.insert(number);
 }
 
 std::optional<WorkUnit> SweepQueue::take(long pattern, int worker) {
@@ -134,31 +146,40 @@ std::optional<WorkUnit> SweepQueue::take(long pattern, int worker) {
         open.waiting.erase(number);
     } else {
         const int end = strands(open);
-        while (open.fresh < end && state_at(open, first_place_of(open, open.fresh)) != State::left) ++open.fresh;
+        const auto passed = [&](int strand) {
+            return state_at(open, first_place_of(open, strand)) != State::left || open.begun.contains(strand);
+        };
+        while (open.fresh < end && passed(open.fresh)) ++open.fresh;
         if (open.fresh == end) return std::nullopt;
         number = open.fresh++;
     }
-    const Strand& strand = begin(open, number);
+    Strand& strand = begin(open, number);
+    strand.handed = true;
     state_at(open, strand.next) = State::handed;
     WorkUnit unit{pattern, strand.next, strand.before};
-    sit(worker, {pattern, unit.place});
+    sit(worker, {pattern, unit.place, {}});
     return unit;
 }
 
-std::optional<WorkUnit> SweepQueue::decide(int worker) {
-    long pattern = -1;
-    while (pattern < 0 && !returned_.empty()) {
-        if (state_[at(returned_.back())] == State::left) pattern = returned_.back();
+std::vector<WorkUnit> SweepQueue::decide(int worker) {
+    std::vector<long> patterns;
+    const auto add = [&](long pattern) {
+        if (state_[at(pattern)] == State::left) patterns.push_back(pattern);
+    };
+    while (patterns.empty() && !returned_.empty()) {
+        add(returned_.back());
         returned_.pop_back();
     }
-    if (pattern < 0) {
-        while (cursor_ < order_.size() && state_[order_[cursor_]] != State::left) ++cursor_;
-        if (cursor_ == order_.size()) return std::nullopt;
-        pattern = order_[cursor_];
+    for (; patterns.empty() && batch_ < batches_.size(); ++batch_) {
+        for (std::uint32_t i = batch_ > 0 ? batches_[batch_ - 1] : 0; i < batches_[batch_]; ++i) add(order_[i]);
     }
-    state_[at(pattern)] = State::handed;
-    sit(worker, {pattern, -1});
-    return WorkUnit{pattern, -1, {}};
+    std::vector<WorkUnit> units;
+    for (const long pattern : patterns) {
+        state_[at(pattern)] = State::handed;
+        units.push_back({pattern, -1, {}});
+    }
+    if (!patterns.empty()) sit(worker, {patterns.back(), -1, patterns});  // the last one's problem is at hand then
+    return units;
 }
 
 // With the pattern that has most strands left.
@@ -178,33 +199,36 @@ std::optional<WorkUnit> SweepQueue::help(int worker) {
     }
 }
 
-std::optional<WorkUnit> SweepQueue::next(int worker) {
+std::vector<WorkUnit> SweepQueue::next(int worker) {
     const auto seat = seats_.find(worker);
     if (seat != seats_.end() && open_.contains(seat->second.pattern)) {
-        if (auto unit = take(seat->second.pattern, worker)) return unit;
+        if (auto unit = take(seat->second.pattern, worker)) return {std::move(*unit)};
     }
     if (!unheld_.empty()) {
-        if (auto unit = take(*unheld_.begin(), worker)) return unit;
+        if (auto unit = take(*unheld_.begin(), worker)) return {std::move(*unit)};
     }
-    if (auto unit = decide(worker)) return unit;
-    return help(worker);
+    if (auto units = decide(worker); !units.empty()) return units;
+    if (auto unit = help(worker)) return {std::move(*unit)};
+    return {};
 }
 
 void SweepQueue::lost(int worker) {
     const auto found = seats_.find(worker);
     if (found == seats_.end()) return;
-    const Seat seat = found->second;
+    const Seat seat = std::move(found->second);
     leave(worker);
-    if (seat.place < 0) {
-        if (state_.at(at(seat.pattern)) != State::handed) return;
-        state_[at(seat.pattern)] = State::left;
-        returned_.push_back(seat.pattern);
-        return;
+    for (const long pattern : seat.verdicts) {
+        if (state_[at(pattern)] != State::handed) continue;
+        state_[at(pattern)] = State::left;
+        returned_.push_back(pattern);
     }
+    if (seat.place < 0) return;
     const auto open = open_.find(seat.pattern);
     if (open == open_.end() || state_at(open->second, seat.place) != State::handed) return;
+    const int strand = strand_of(open->second, seat.place);
     state_at(open->second, seat.place) = State::left;
-    open->second.waiting.insert(strand_of(open->second, seat.place));
+    open->second.begun.at(strand).handed = false;
+    open->second.waiting.insert(strand);
 }
 
 }  // namespace nsma

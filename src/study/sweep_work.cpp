@@ -10,6 +10,9 @@
 namespace nsma {
 namespace {
 
+// Levels that a verdict brings with it: a message of their answers stays below a megabyte.
+constexpr int most_brought = 1024;
+
 std::size_t at(long index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
@@ -92,6 +95,21 @@ WorkResult SweepWorker::run(const WorkUnit& unit) {
     }
     result.answer = solver_.solve(scene_.bar, problem_, request);
     return result;
+}
+
+std::vector<WorkResult> SweepWorker::run(const std::vector<WorkUnit>& units) {
+    std::vector<WorkResult> results;
+    for (const WorkUnit& unit : units) {
+        results.push_back(run(unit));
+        if (unit.place >= 0 || problem_.verdict != Verdict::admissible || is_extreme(scene_.objective)) continue;
+        int brought = 0;
+        for (std::size_t level = 0; level < scene_.levels.size() && brought < most_brought; ++level) {
+            if (!solver_.outside(problem_.interval, scene_.levels[level])) continue;
+            results.push_back(run(WorkUnit{unit.pattern, static_cast<int>(level) + 1, {}}));
+            ++brought;
+        }
+    }
+    return results;
 }
 
 }  // namespace nsma

@@ -1,39 +1,89 @@
 #!/bin/sh
-# tests/bench/run.sh [BUILD]: builds the benchmarks in BUILD (default build/release), runs them one after another and
-# writes data/bench/scale.csv (every time) and data/bench/scale.md (machine, versions, growth beside what is expected).
+# tests/bench/run.sh [BUILD]: builds the benchmarks in BUILD (default build/release) and runs them one after another, some
+# ten minutes. Writes data/bench/scale.csv (every benchmark), whole.csv and solves.csv (whole runs of the program, and the
+# solver calls of one of them), schedule.csv (that sweep on up to 1000 ranks) and scale.md, which puts them side by side.
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1:-$top/build/release}
 cmake --build "$build" --target nsma_benchmarks nsma_app
+tools=$(dirname "$(find "$build" -name nsma_bench -type f | head -1)")
+nsma=$build/nsma
 out=$top/data/bench
-mkdir -p "$out"
-bench=$(find "$build" -name nsma_bench -type f | head -1)
-"$bench" --benchmark_format=csv --benchmark_min_time=0.2 > "$out/scale.csv" 2> "$build/scale.log"
+runs=$build/bench-runs
+rm -rf "$runs"
+mkdir -p "$out" "$runs"
+# For mpirun in a container, where everyone is root.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+
+"$tools/nsma_bench" --benchmark_format=csv --benchmark_min_time=0.2 > "$out/scale.csv" 2> "$runs/scale.log"
+
+scene=$top/problems/full-spectrum.toml
+sed 's/^cells = .*/cells = 20/' "$scene" > "$runs/twenty.toml"
+sed 's/^count = .*/count = 48/' "$scene" > "$runs/levels.toml"
+whole() {  # NAME COMMAND...: a row of whole.csv
+    name=$1
+    shift
+    echo "$name" >&2
+    row=$("$tools/nsma_measure" "$@")
+    echo "$name,$row" >> "$out/whole.csv"
+}
+echo "run,wall_s,cpu_s,peak_mb" > "$out/whole.csv"
+for turn in 1 2 3; do
+    whole "full spectrum alone" "$nsma" sweep "$scene" --quiet --out "$runs/alone"
+    whole "full spectrum on 2 ranks" mpirun -n 2 "$nsma" sweep "$scene" --quiet --out "$runs/two"
+    for table in patterns.csv levels.csv orbits.jsonl; do cmp "$runs/alone/$table" "$runs/two/$table"; done
+done
+whole "full spectrum without relaxations, 12 levels" "$nsma" sweep "$scene" --bound-nodes 0 --quiet --out "$runs/few"
+whole "full spectrum without relaxations, 48 levels" "$nsma" sweep "$runs/levels.toml" --bound-nodes 0 --quiet --out "$runs/many"
+whole "N = 20 by both solvers" "$nsma" sweep "$runs/twenty.toml" --solver both --bound-nodes 0 --quiet --out "$runs/twenty"
+for m in 50 100 200 400; do
+    cells=$((5 * m / 4))
+    least=$("$nsma" orbit "$scene" --cells "$cells" --free $((2 * cells + m)) --contact $((2 * cells - m)) --json |
+        sed 's/.*"energy_ratio":\([^,]*\),.*/\1/')
+    whole "one level of m = $m by Ipopt" "$nsma" orbit "$scene" --cells "$cells" --free $((2 * cells + m)) \
+        --contact $((2 * cells - m)) --energy "$(echo "$least" | awk '{ printf "%.17g", 1.5 * $1 }')" --solver ipopt
+done
+"$tools/nsma_schedule" "$runs/alone/timings.csv" 1000000 2e-4 2e-6 > "$out/schedule.csv"
+
+# Calls of each solver in the sweep of N = 20, patterns with m <= 20.
+awk -F, '
+    /^#/ || /^cells/ || /^free_steps/ { next }
+    FILENAME ~ /patterns/ { m[$3 "," $4] = $6; next }
+    ($4 ~ /ipopt|nlopt/) && m[$1 "," $2] <= 20 { print $4 (($5 < 0) ? " from the level before" : $4 == "ipopt" ? " cold" : "") "," $7 "," $8 * 1000; if ($4 == "ipopt") print "ipopt," $7 "," $8 * 1000 }
+' "$runs/twenty/patterns.csv" "$runs/twenty/timings.csv" | sort -t, -k1,1 -k3,3g | awk -F, '
+    function row() { if (n) printf "%s,%d,%d,%.3f,%.3f\n", name, n, it[int((n + 1) / 2)], t[int((n + 1) / 2)], t[int(0.9 * n + 0.5)] }
+    BEGIN { print "solver,calls,iterations_of_median,median_ms,p90_ms" }
+    $1 != name { row(); name = $1; n = 0 }
+    { ++n; it[n] = $2; t[n] = $3 }
+    END { row() }' > "$out/solves.csv"
+
+table() { awk -F, 'NR == 1 { gsub(/_/, " ") } { line = "|"; for (i = 1; i <= NF; ++i) line = line " " $i " |"; print line }
+    NR == 1 { line = "|"; for (i = 1; i <= NF; ++i) line = line "---|"; print line }' "$1"; }
 {
     echo "# How time grows"
     echo
-    echo "Written by tests/bench/run.sh. Times are of one core while nothing else should run; load at the start: $(cut -d' ' -f1-3 /proc/loadavg)."
+    echo "Written by tests/bench/run.sh. Times are those of one core of a machine that should do nothing else; its load at the end: $(cut -d' ' -f1-3 /proc/loadavg)."
     echo
     echo "- machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores"
     echo "- compiler: $(c++ --version | head -1), $(sed -n 's/^CMAKE_BUILD_TYPE[^=]*=//p' "$build/CMakeCache.txt")"
-    echo "- versions: $("$build/nsma" --version)"
+    echo "- versions: $("$nsma" --version)"
     echo
-    echo "The exponent is the slope of log time against log of the number after the slash, by least squares over all its values."
+    echo "The exponent is the slope of log time against log of the number before the colon, by least squares over all its values."
     echo
-    echo "| benchmark | times [ms] | exponent | expected |"
+    echo "| benchmark | CPU times [ms] | exponent | expected |"
     echo "|---|---|---|---|"
     awk -F, '
         BEGIN {
-            split("sieve 2 scan_linear 3+ scan_certified 3 kernel_exact 1 kernel_dense 3 march_queue 1 march_dense 3 serve 1 solve_condensed 3 solve_lifted 1 whole_orbit 3", words, " ")
+            split("sieve 2 scan_linear 3+ scan_certified 3 kernel_exact 1 kernel_dense 3 march_queue 1 march_dense 3 serve 0 solve_condensed 3 solve_lifted 1 whole_orbit 3", words, " ")
             for (i = 1; i in words; i += 2) expected[words[i]] = words[i + 1]
         }
         { gsub(/"/, "", $1) }
-        split($1, part, "/") >= 2 && $3 + 0 > 0 {
+        split($1, part, "/") >= 2 && $4 + 0 > 0 {
             unit = $5 == "ns" ? 1e-6 : $5 == "us" ? 1e-3 : 1
-            name = part[1]; x = log(part[2]); y = log($3 * unit)
+            name = part[1]; x = log(part[2]); y = log($4 * unit)
             if (!(name in n)) order[++count] = name
             ++n[name]; sx[name] += x; sy[name] += y; sxx[name] += x * x; sxy[name] += x * y
-            times[name] = times[name] sprintf("%s%d: %.4g", times[name] == "" ? "" : ", ", part[2], $3 * unit)
+            times[name] = times[name] sprintf("%s%d: %.4g", times[name] == "" ? "" : ", ", part[2], $4 * unit)
         }
         END {
             for (i = 1; i <= count; ++i) {
@@ -44,19 +94,44 @@ bench=$(find "$build" -name nsma_bench -type f | head -1)
         }' "$out/scale.csv"
     cat <<'END'
 
-What is measured:
+What is measured, and what to read in it:
 
 - `sieve`: all 8 N^2 patterns with n_T <= 4N; N = 1000 is 7 998 000 patterns.
 - `scan_linear`: verdict and least energy of all of them, by linear program and least norm where the sieve leaves one;
-  `scan_certified`: in closed form, each with its exact certificate, written and checked.
+  `scan_certified`: verdict and interval in closed form, each with its exact certificate, written and checked.
 - `kernel_exact` against `kernel_dense` (singular values), `march_queue` against `march_dense` (matrix times vector), one
   period each. Small kernels are dominated by their allocations, so the exponent is below 1.
 - `solve_ipopt`, `solve_nlopt` (SLSQP): one call from one start; the iterations differ from m to m, so no exponent is expected.
-- `solve_condensed`, `solve_lifted`: Ipopt on the same program with two places a class, n_T = 4N, m = 0.8 N, from the same
-  start, at most 150 iterations. The lifted form is chosen from 100 rows on where the condensed one has 8 times its
-  nonzeros (`prefers_lifted`).
-- `whole_orbit`: the same patterns (m = 400 has N = 500) from the four integers to the replayed orbit, by Ipopt.
-- `serve`: what rank 0 does for one result of N = 12 and 48: read, store and commit, pack the next unit.
+- `solve_condensed` and `solve_lifted`: Ipopt on the same program with two places a class, n_T = 4N, m = 0.8 N, from the
+  same start at most 150 iterations, which ends most of them unconverged. The lifted form is chosen from 100 rows on where
+  the condensed one has 8 times its nonzeros (`prefers_lifted`).
+- `whole_orbit`: the same patterns at 1.5 E_min, from the four integers to the replayed orbit by Ipopt alone, bounds and
+  exact proof of the interval included. At m = 48 relaxations, which larger programs do without, take most of the time, so
+  the exponent says little.
+- `serve`: what rank 0 does for one answer: read, store and commit, choose and pack the next unit; a million levels a
+  pattern. `serve_verdicts`: reading and storing all verdicts of N = 12 and 48, 60 and 1238 messages.
+
+## Whole runs
+
+From start to exit, tables and charts included; memory is that of the largest process.
+
 END
+    table "$out/whole.csv"
+    cat <<'END'
+
+The full spectrum (N = 12, 12 levels) alone and on two ranks takes turns, so that a machine that changes its speed
+changes it for both; their tables are compared byte by byte. mpirun waits two seconds after an exit code other than 0
+(here 4: two levels where the solvers disagree).
+
+Calls of the solvers in the sweep of N = 20, m <= 20 (wall time; the first level of eight starts cold):
+
+END
+    table "$out/solves.csv"
+    cat <<'END'
+
+A million answers on 1 to 1000 ranks, from the times of the sweep alone, 0.2 ms at rank 0 for a message and 2 us latency:
+
+END
+    table "$out/schedule.csv"
 } > "$out/scale.md"
 cat "$out/scale.md"

@@ -1,7 +1,9 @@
 // How time grows with the mesh: run by run.sh, which fits the exponents. The number after the slash is what the time
 // is fitted against.
 
+#include <cmath>
 #include <filesystem>
+#include <memory>
 #include <numeric>
 
 #include <benchmark/benchmark.h>
@@ -13,8 +15,9 @@
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/orbit_solver.hpp"
 #include "nsma/report/sweep_store.hpp"
-#include "nsma/study/record_rows.hpp"
 #include "nsma/study/scan.hpp"
+#include "nsma/study/sweep_queue.hpp"
+#include "nsma/study/work_messages.hpp"
 #include "nsma/wave/dense_wfem.hpp"
 #include "nsma/wave/marcher.hpp"
 
@@ -176,7 +179,7 @@ void whole_orbit(benchmark::State& state) {
 }
 BENCHMARK(whole_orbit)->Arg(48)->Arg(96)->Arg(192)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
 
-// What rank 0 does for one result: read the message, store it, choose the next unit, pack it. The number is N.
+// What rank 0 does for one answer: read the message, store it, choose the next unit, pack it. The number is N.
 void serve(benchmark::State& state) {
     Scene scene;
     scene.mesh.cells = static_cast<int>(state.range(0));
@@ -184,25 +187,59 @@ void serve(benchmark::State& state) {
     scene.levels.resize(1'000'000, 12.0);
     scene.text = "benchmark";
     SweepWorker worker(scene, {});
-    SweepQueue queue(scene, SweepQueue::Order::longest_first);
+    SweepQueue queue(scene, {}, SweepQueue::Order::longest_first);
     const auto folder = std::filesystem::temp_directory_path() / ("nsma-bench-" + std::to_string(state.range(0)));
     std::filesystem::remove_all(folder);
     {
         SweepStore store(folder, scene, {"", ""}, SweepStore::Mode::fresh);
-        WorkResult result = worker.run(*queue.next(0));
-        queue.done(result);
-        result = worker.run({0, 1, {}});
-        const std::string message = packed(result);
-        int place = 0;
+        queue.done(worker.run(queue.next(0).at(0)));
+        std::vector<WorkUnit> units = queue.next(0);
+        const std::vector<WorkResult> answer{worker.run(WorkUnit{0, 1, {}})};
+        const std::string message = packed(answer);
         for (auto _ : state) {
-            WorkResult got = unpacked_result(message, scene.bar);
-            got.place = place++;
+            auto got = unpacked_results(message, scene.bar);
+            got[0].place = units.at(0).place;
             store.put(got);
-            benchmark::DoNotOptimize(packed(WorkUnit{0, place, {}}).data());
+            queue.done(got[0]);
+            units = queue.next(0);
+            benchmark::DoNotOptimize(packed(units).data());
         }
     }
     std::filesystem::remove_all(folder);
 }
 BENCHMARK(serve)->Arg(12)->Arg(48)->Unit(benchmark::kMicrosecond);
+
+// The same for the messages of verdicts, with the levels that they bring, of all patterns up to 4 tau at 12 levels.
+void serve_verdicts(benchmark::State& state) {
+    Scene scene;
+    scene.mesh.cells = static_cast<int>(state.range(0));
+    scene.patterns = PeriodSelection{{0.0, 4.0}, std::nullopt};
+    for (int k = 0; k < 12; ++k) scene.levels.push_back(1.05 * std::pow(100 / 1.05, k / 11.0));
+    scene.text = "benchmark";
+    SweepWorker worker(scene, {});
+    std::vector<std::string> messages;
+    {
+        SweepQueue queue(scene, {}, SweepQueue::Order::longest_first);
+        for (int helper = 0;; ++helper) {
+            const auto units = queue.next(helper);
+            if (units.empty()) break;
+            messages.push_back(packed(worker.run(units)));
+        }
+    }
+    const auto folder = std::filesystem::temp_directory_path() / ("nsma-bench-" + std::to_string(state.range(0)));
+    for (auto _ : state) {
+        state.PauseTiming();
+        std::filesystem::remove_all(folder);
+        auto store = std::make_unique<SweepStore>(folder, scene, StoreVersions{"", ""}, SweepStore::Mode::fresh);
+        state.ResumeTiming();
+        for (const std::string& message : messages) store->put(unpacked_results(message, scene.bar));
+        state.PauseTiming();
+        store.reset();
+        state.ResumeTiming();
+    }
+    std::filesystem::remove_all(folder);
+    state.counters["messages"] = static_cast<double>(messages.size());
+}
+BENCHMARK(serve_verdicts)->Arg(12)->Arg(48)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -45,9 +45,9 @@ protected:
         store.for_each([&queue](const WorkResult& result) { queue.done(result); });
         SweepWorker worker(scene, {});
         for (; limit > 0 && !queue.finished(); --limit) {
-            const WorkResult result = worker.run(*queue.next(0));
-            store.put(result);
-            queue.done(result);
+            const auto results = worker.run(queue.next(0));
+            store.put(results);
+            for (const WorkResult& result : results) queue.done(result);
         }
         return queue.finished();
     }
@@ -129,8 +129,8 @@ TEST_F(SweepStoreTest, NothingIsDoubled) {
     SweepStore store(path, scene, versions, Mode::fresh);
     SweepWorker worker(scene, {});
     for (int time = 0; time < 2; ++time) {
-        store.put(worker.run({0, -1, {}}));
-        store.put(worker.run({0, 0, {}}));
+        store.put({worker.run(WorkUnit{0, -1, {}})});
+        store.put({worker.run(WorkUnit{0, 0, {}})});
     }
     int count = 0;
     store.for_each([&count](const WorkResult&) { ++count; });

@@ -42,6 +42,17 @@ WorkResult made_up(const WorkUnit& unit) {
     return result;
 }
 
+/// A worker that only makes its results up.
+std::vector<WorkResult> made_up(const std::vector<WorkUnit>& units) {
+    std::vector<WorkResult> results;
+    for (const WorkUnit& unit : units) results.push_back(made_up(unit));
+    return results;
+}
+
+void all_done(SweepQueue& queue, const std::vector<WorkResult>& results) {
+    for (const WorkResult& result : results) queue.done(result);
+}
+
 using Key = std::pair<long, int>;
 
 std::set<Key> all_units(const Scene& scene, int first, int last) {
@@ -59,15 +70,37 @@ TEST(SweepQueue, OneWorkerTakesTheScenesOrder) {
     SweepQueue queue(scene, {}, SweepQueue::Order::scene);
     std::vector<Key> seen;
     while (!queue.finished()) {
-        const auto unit = queue.next(0);
-        ASSERT_TRUE(unit);
-        seen.emplace_back(unit->pattern, unit->place);
-        queue.done(made_up(*unit));
+        const auto units = queue.next(0);
+        ASSERT_EQ(units.size(), 1u);
+        seen.emplace_back(units[0].pattern, units[0].place);
+        all_done(queue, made_up(units));
     }
     EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
     EXPECT_EQ(std::set<Key>(seen.begin(), seen.end()), all_units(scene, 0, 3));
     EXPECT_EQ(queue.done_count(), queue.total_count());
-    EXPECT_FALSE(queue.next(0));
+    EXPECT_TRUE(queue.next(0).empty());
+}
+
+TEST(SweepQueue, VerdictsGoInAboutEqualWork) {
+    Scene scene = scene_of();
+    scene.mesh.cells = 40;
+    const auto patterns = patterns_of(scene);
+    SweepQueue queue(scene, {}, SweepQueue::Order::longest_first);
+    std::set<long> seen;
+    for (int worker = 0; seen.size() < patterns.size(); ++worker) {
+        const auto units = queue.next(worker);
+        ASSERT_FALSE(units.empty());
+        double work = 0;
+        for (const WorkUnit& unit : units) {
+            const Pattern& pattern = patterns[static_cast<std::size_t>(unit.pattern)];
+            work += 1000 + static_cast<double>(kernel_dimension(pattern)) * pattern.period_steps();
+            EXPECT_TRUE(seen.insert(unit.pattern).second);
+        }
+        // A batch ends with the pattern that fills it.
+        EXPECT_TRUE(work >= 20'000 || seen.size() == patterns.size());
+        EXPECT_LT(work, 20'000 + 1000 + 80 * 160);
+    }
+    EXPECT_TRUE(queue.next(-1).empty());
 }
 
 // Five workers, of whom one in ten is lost with its unit. Levels of a strand, so many in a row, come in their order,
@@ -77,28 +110,30 @@ void expect_each_unit_once(const Scene& scene, const OrbitSolverOptions& options
     const int last = extreme ? 1 : static_cast<int>(scene.levels.size());
     std::mt19937 random(5);
     SweepQueue queue(scene, options, SweepQueue::Order::longest_first);
-    std::map<int, WorkUnit> held;
+    std::map<int, std::vector<WorkUnit>> held;
     std::set<Key> seen;
     while (!queue.finished()) {
         const int worker = static_cast<int>(random() % 5);
         const auto hand = held.find(worker);
         if (hand == held.end()) {
-            const auto unit = queue.next(worker);
-            if (!unit) continue;
-            held[worker] = *unit;
-            std::vector<double> before;
-            const int first = unit->place < 1 ? unit->place : (unit->place - 1) / strand * strand + 1;
-            for (int place = first; place < unit->place; ++place) {
-                EXPECT_TRUE(seen.contains({unit->pattern, place}));
-                if (place % 2 == 0) before = {static_cast<double>(unit->pattern), static_cast<double>(place)};
+            const auto units = queue.next(worker);
+            if (units.empty()) continue;
+            held[worker] = units;
+            for (const WorkUnit& unit : units) {
+                std::vector<double> before;
+                const int first = unit.place < 1 ? unit.place : (unit.place - 1) / strand * strand + 1;
+                for (int place = first; place < unit.place; ++place) {
+                    EXPECT_TRUE(seen.contains({unit.pattern, place}));
+                    if (place % 2 == 0) before = {static_cast<double>(unit.pattern), static_cast<double>(place)};
+                }
+                EXPECT_EQ(unit.before, before);
             }
-            EXPECT_EQ(unit->before, before);
         } else if (random() % 10 == 0) {
             queue.lost(worker);
             held.erase(worker);
         } else {
-            EXPECT_TRUE(seen.emplace(hand->second.pattern, hand->second.place).second);
-            queue.done(made_up(hand->second));
+            for (const WorkUnit& unit : hand->second) EXPECT_TRUE(seen.emplace(unit.pattern, unit.place).second);
+            all_done(queue, made_up(hand->second));
             held.erase(worker);
         }
     }
@@ -129,12 +164,12 @@ TEST(SweepQueue, StrandsOfOnePatternAreSharedOut) {
     scene.levels.resize(20);
     std::iota(scene.levels.begin(), scene.levels.end(), 1.0);
     SweepQueue queue(scene, asking(SolverChoice::both), SweepQueue::Order::longest_first);
-    queue.done(made_up(*queue.next(0)));
+    all_done(queue, made_up(queue.next(0)));
     // The least-energy orbit and the first of each strand: levels 1, 9 and 17.
     std::set<int> places;
-    for (int worker = 0; worker < 4; ++worker) places.insert(queue.next(worker)->place);
+    for (int worker = 0; worker < 4; ++worker) places.insert(queue.next(worker).at(0).place);
     EXPECT_EQ(places, (std::set<int>{0, 1, 9, 17}));
-    EXPECT_FALSE(queue.next(4));
+    EXPECT_TRUE(queue.next(4).empty());
 }
 
 TEST(SweepQueue, LongestComesFirst) {
@@ -142,13 +177,42 @@ TEST(SweepQueue, LongestComesFirst) {
     const auto patterns = patterns_of(scene);
     SweepQueue queue(scene, {}, SweepQueue::Order::longest_first);
     double last = 1e300;
-    for (int worker = 0; worker < static_cast<int>(patterns.size()); ++worker) {
-        const auto unit = queue.next(worker);
-        ASSERT_TRUE(unit);
-        const Pattern& pattern = patterns[static_cast<std::size_t>(unit->pattern)];
-        const double work = static_cast<double>(kernel_dimension(pattern)) * pattern.period_steps();
-        EXPECT_LE(work, last);
-        last = work;
+    std::size_t handed = 0;
+    for (int worker = 0; handed < patterns.size(); ++worker) {
+        const auto units = queue.next(worker);
+        ASSERT_FALSE(units.empty());
+        for (const WorkUnit& unit : units) {
+            const Pattern& pattern = patterns[static_cast<std::size_t>(unit.pattern)];
+            const double work = static_cast<double>(kernel_dimension(pattern)) * pattern.period_steps();
+            EXPECT_LE(work, last);
+            last = work;
+            ++handed;
+        }
+    }
+}
+
+TEST(SweepQueue, LevelsThatComeWithAVerdictAreNotHandedOut) {
+    Scene scene = scene_of();
+    scene.patterns = ListSelection{{{15, 1}}};
+    scene.levels.resize(20);
+    for (const SolverChoice solvers : {SolverChoice::both, SolverChoice::proof}) {
+        SweepQueue queue(scene, asking(solvers), SweepQueue::Order::scene);
+        all_done(queue, made_up(queue.next(0)));
+        // Outside the interval: the first three, and from the twelfth on.
+        std::set<int> places;
+        for (int place = 1; place <= 20; ++place) {
+            if (place > 3 && place < 12) continue;
+            queue.done(made_up(WorkUnit{0, place, {}}));
+            places.insert(place);
+        }
+        while (!queue.finished()) {
+            const auto units = queue.next(0);
+            ASSERT_EQ(units.size(), 1u);
+            EXPECT_TRUE(places.insert(units[0].place).second) << units[0].place;
+            all_done(queue, made_up(units));
+        }
+        EXPECT_EQ(places.size(), 21u);
+        EXPECT_EQ(queue.done_count(), queue.total_count());
     }
 }
 
@@ -161,19 +225,24 @@ TEST(SweepQueue, GoesOnWhereAStoreEnds) {
         SweepQueue rest(scene, options, SweepQueue::Order::scene);
         std::set<Key> seen;
         std::map<Key, std::vector<double>> before;
+        // A message is stored as a whole.
         while (!whole.finished()) {
-            const auto unit = *whole.next(0);
-            whole.done(made_up(unit));
-            before[{unit.pattern, unit.place}] = unit.before;
-            if (seen.size() >= stored) continue;
-            rest.done(made_up(unit));
-            seen.emplace(unit.pattern, unit.place);
+            const auto units = whole.next(0);
+            const bool kept = seen.size() < stored;
+            all_done(whole, made_up(units));
+            for (const WorkUnit& unit : units) {
+                before[{unit.pattern, unit.place}] = unit.before;
+                if (!kept) continue;
+                rest.done(made_up(unit));
+                seen.emplace(unit.pattern, unit.place);
+            }
         }
         while (!rest.finished()) {
-            const auto unit = *rest.next(0);
-            rest.done(made_up(unit));
-            EXPECT_TRUE(seen.emplace(unit.pattern, unit.place).second);
-            EXPECT_EQ(unit.before, (before[{unit.pattern, unit.place}]));
+            for (const WorkUnit& unit : rest.next(0)) {
+                rest.done(made_up(unit));
+                EXPECT_TRUE(seen.emplace(unit.pattern, unit.place).second);
+                EXPECT_EQ(unit.before, (before[{unit.pattern, unit.place}]));
+            }
         }
         EXPECT_EQ(seen, all_units(scene, 0, 12));
     }
@@ -187,18 +256,18 @@ TEST(SweepQueue, NearestFollowsThePatternFromLevelToLevel) {
     SweepQueue queue(scene, {}, SweepQueue::Order::longest_first);
     SweepWorker worker(scene, {});
     SweepWorker other(scene, {});
-    queue.done(worker.run(*queue.next(0)));
-    queue.done(worker.run(*queue.next(0)));  // the least-energy orbit, which no level needs
+    all_done(queue, worker.run(queue.next(0)));
+    all_done(queue, worker.run(queue.next(0)));  // the least-energy orbit, which no level needs
     std::vector<double> beta;
     for (int place = 1; place <= 3; ++place) {
-        const auto unit = queue.next(0);
-        ASSERT_TRUE(unit);
-        EXPECT_EQ(unit->place, place);
-        EXPECT_EQ(unit->before, beta);
-        EXPECT_FALSE(queue.next(1));  // it needs this one
-        const WorkResult result = worker.run(*unit);
+        const auto units = queue.next(0);
+        ASSERT_EQ(units.size(), 1u);
+        EXPECT_EQ(units[0].place, place);
+        EXPECT_EQ(units[0].before, beta);
+        EXPECT_TRUE(queue.next(1).empty());  // it needs this one
+        const WorkResult result = worker.run(units[0]);
         // The same unit done elsewhere, without what came before, is the same to the bit.
-        const WorkResult again = other.run(*unit);
+        const WorkResult again = other.run(units[0]);
         ASSERT_TRUE(result.answer->orbit && again.answer->orbit);
         EXPECT_EQ(result.answer->orbit->beta, again.answer->orbit->beta);
         beta.assign(result.answer->orbit->beta.begin(), result.answer->orbit->beta.end());

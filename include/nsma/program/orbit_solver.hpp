@@ -76,6 +76,9 @@ public:
     [[nodiscard]] OrbitAnswer solve(const Bar& bar, const PatternProblem& problem,
                                     const OrbitRequest& request);
 
+    /// Whether no orbit of such a pattern can have this energy, or none is known to: nothing is solved for it.
+    [[nodiscard]] bool outside(const EnergyInterval& interval, double level) const;
+
 private:
     OrbitSolverOptions options_;
     IpoptSolver ipopt_;

@@ -35,7 +35,8 @@ public:
     SweepStore(const SweepStore&) = delete;
     SweepStore& operator=(const SweepStore&) = delete;
 
-    void put(const WorkResult& result);  ///< a result that is stored already stays as it is
+    /// In one commit: all are stored, or none is. A result that is stored already stays as it is.
+    void put(const std::vector<WorkResult>& results);
     /// Hands on every result in the scene's order: each pattern, then its answers by place.
     void for_each(const std::function<void(WorkResult)>& visit) const;
     [[nodiscard]] const Scene& scene() const;

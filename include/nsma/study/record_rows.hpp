@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -34,12 +33,5 @@ struct ResultRows {
 /// The inverse, for a bar. Throws std::invalid_argument on rows that do not fit.
 [[nodiscard]] PatternRecord pattern_record_of(const Row& row);
 [[nodiscard]] OrbitAnswer orbit_answer_of(const ResultRows& rows, const Bar& bar);
-
-/// Bytes for another process of the same machine type, and back. Throws std::invalid_argument
-/// on bytes that do not fit.
-[[nodiscard]] std::string packed(const WorkUnit& unit);
-[[nodiscard]] WorkUnit unpacked_unit(std::string_view bytes);
-[[nodiscard]] std::string packed(const WorkResult& result);
-[[nodiscard]] WorkResult unpacked_result(std::string_view bytes, const Bar& bar);
 
 }  // namespace nsma

@@ -19,17 +19,19 @@ namespace nsma {
 /// begin near their optimum and a long list of levels still divides among many workers; else one.
 /// A level's result so depends on its strand alone, not on who did what when.
 ///
+/// Verdicts take microseconds: of the longest first, several are handed out together.
+///
 /// Its memory: a byte and a number a pattern, a byte a level of the patterns in hand.
 class SweepQueue {
 public:
     enum class Order { scene, longest_first };
     SweepQueue(const Scene& scene, const OrbitSolverOptions& options, Order order);
 
-    /// Marks a unit as done, by a worker or by a store read back. Levels of one strand must come in their order.
+    /// Marks a unit as done, by a worker or by a store read back.
     void done(const WorkResult& result);
-    /// The next unit for this worker, which must not hold another; absent: nothing at present.
-    [[nodiscard]] std::optional<WorkUnit> next(int worker);
-    /// The worker is gone: its unit is handed out again.
+    /// The next units for this worker, which must not hold others: verdicts, or one answer. Empty: nothing at present.
+    [[nodiscard]] std::vector<WorkUnit> next(int worker);
+    /// The worker is gone: its units are handed out again.
     void lost(int worker);
 
     [[nodiscard]] bool finished() const { return undecided_ == 0 && open_.empty(); }
@@ -40,7 +42,8 @@ private:
     enum class State : std::uint8_t { left, handed, done };
     // A strand begun and not done.
     struct Strand {
-        int next = 0;                // place
+        int next = 0;                // place; those before it are done
+        bool handed = false;
         std::vector<double> before;  // beta of its last orbit
     };
     // An admissible pattern with places left.
@@ -50,13 +53,14 @@ private:
         int strand_length = 1;
         int fresh = 0;  // no strand from here on was handed out
         std::map<int, Strand> begun;
-        std::set<int> waiting;  // those of them that nobody works on
+        std::set<int> waiting;  // those of them that are not handed
         int workers = 0;        // whose seat is here
     };
     // What a worker has in hand, or had last.
     struct Seat {
         long pattern = 0;
         int place = -1;
+        std::vector<long> verdicts;  // patterns; place -1
     };
 
     [[nodiscard]] int strand_of(const Open& open, int place) const;
@@ -69,7 +73,7 @@ private:
     void leave(int worker);
     void decided(const WorkResult& result);
     [[nodiscard]] std::optional<WorkUnit> take(long pattern, int worker);
-    [[nodiscard]] std::optional<WorkUnit> decide(int worker);
+    [[nodiscard]] std::vector<WorkUnit> decide(int worker);
     [[nodiscard]] std::optional<WorkUnit> help(int worker);
 
     OrbitSolverOptions options_;
@@ -78,7 +82,8 @@ private:
     int last_place_ = 0;
     std::vector<State> state_;  // of each pattern's verdict
     std::vector<std::uint32_t> order_;
-    std::size_t cursor_ = 0;
+    std::vector<std::uint32_t> batches_;  // ends of the pieces of order_ that are handed out together
+    std::size_t batch_ = 0;
     std::vector<long> returned_;  // verdicts of lost workers
     std::map<long, Open> open_;
     std::set<long> unheld_;  // open patterns without a worker: of an earlier run, or of lost workers
