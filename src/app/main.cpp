@@ -40,6 +40,7 @@ void keep_freed_memory() {
 int main(int count, char** words) {
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
+    std::signal(SIGUSR1, on_interrupt);  // mpirun hands it on to its ranks; a SIGTERM it follows with SIGKILL
     std::signal(SIGPIPE, SIG_IGN);
     keep_freed_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error like a full disk

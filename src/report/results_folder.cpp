@@ -56,6 +56,24 @@ void write_whole(const fs::path& path, const std::string& text) {
     put_in_place(path);
 }
 
+namespace {
+
+// The scene of a folder that has none, unless another process gives it one at the same time.
+void write_scene(const fs::path& copy, const std::string& text) {
+    const fs::path own = fmt::format("{}.{}", copy.string(), getpid());
+    write_whole(own, text);
+    std::error_code code;
+    fs::create_hard_link(own, copy, code);  // unlike a renaming, never over another's
+    if (code && !fs::exists(copy)) {
+        code.clear();
+        fs::rename(own, copy, code);  // a file system without links
+        if (code) fail(copy, fmt::format("cannot be written: {}", code.message()));
+    }
+    fs::remove(own, code);
+}
+
+}  // namespace
+
 void prepare_results_folder(const fs::path& folder, const Scene& scene, std::span<const char* const> files) {
     if (scene.text.empty())
         throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
@@ -66,22 +84,21 @@ void prepare_results_folder(const fs::path& folder, const Scene& scene, std::spa
     if (code) fail(folder, fmt::format("cannot be made: {}", code.message()));
 
     const fs::path copy = folder / "scene.toml";
-    if (fs::exists(copy)) {
-        const auto text = contents(copy);
-        if (!text) fail(copy, fmt::format("cannot be read: {}", std::strerror(errno)));
-        if (*text != scene.text) {
-            fail(folder,
-                 "holds results of another scene (its scene.toml differs); choose another folder "
-                 "or remove it");
-        }
-    } else {
+    if (!fs::exists(copy)) {
         for (const char* file : files) {
             if (fs::exists(folder / file)) {
                 fail(folder / file,
                      "is in the way: the folder has no scene.toml that would tell its scene");
             }
         }
-        write_whole(copy, scene.text);
+        write_scene(copy, scene.text);
+    }
+    const auto text = contents(copy);
+    if (!text) fail(copy, fmt::format("cannot be read: {}", std::strerror(errno)));
+    if (*text != scene.text) {
+        fail(folder,
+             "holds results of another scene (its scene.toml differs); choose another folder "
+             "or remove it");
     }
 }
 

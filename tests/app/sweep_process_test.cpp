@@ -210,6 +210,26 @@ TEST_F(SweepProcess, ALostRankLosesNothingThatWasStored) {
     }
 }
 
+TEST_F(SweepProcess, AWarningOfTheTimeLimitEndsRanksInOrder) {
+    const std::string scene = write_scene("long.toml", "least-shock", "[1.5, 1.6, 1.8, 2.0, 2.5, 3.0, 4.0, 6.0, 9.0, 12.0]");
+    const fs::path alone = folder_ / "alone";
+    const int code = run(sweep(scene, alone, false, "both"));
+    const fs::path out = folder_ / "out";
+    // The first moment at which there is something to keep.
+    const pid_t child = start(ranks(2, sweep(scene, out, false, "both")));
+    for (int i = 0; i < 6000 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite"); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    kill(child, SIGUSR1);
+    const int ended = finish(child);
+    if (ended == 127) GTEST_SKIP() << "no mpirun here";
+    // 130 unless all was done already.
+    EXPECT_TRUE(ended == 130 || ended == code) << ended << ": " << output();
+    EXPECT_TRUE(fs::exists(out / "levels.csv")) << output();
+    EXPECT_EQ(run(sweep(scene, out, true, "both")), code) << output();
+    expect_same(out, alone);
+}
+
 TEST_F(SweepProcess, AFullDiskLeavesAStoreToGoOnWith) {
     const fs::path whole = folder_ / "whole";
     const fs::path out = folder_ / "out";
