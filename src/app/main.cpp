@@ -4,13 +4,10 @@
 #include <exception>
 #include <variant>
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include "commands.hpp"
 #include "crew.hpp"
 
+#include "nsma/program/solver.hpp"
 #include "nsma/report/scene_file.hpp"
 
 namespace {
@@ -26,15 +23,6 @@ extern "C" void on_interrupt(int signal) {
     }
 }
 
-// Ipopt takes and gives back its memory in every iteration; kept by the process it is a quarter faster.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-    constexpr int kept = 64 << 20;  // bytes
-    mallopt(M_TRIM_THRESHOLD, kept);
-    mallopt(M_TOP_PAD, kept / 4);
-#endif
-}
-
 }  // namespace
 
 int main(int count, char** words) {
@@ -42,7 +30,7 @@ int main(int count, char** words) {
     std::signal(SIGTERM, on_interrupt);
     std::signal(SIGUSR1, on_interrupt);  // mpirun hands it on to its ranks; a SIGTERM it follows with SIGKILL
     std::signal(SIGPIPE, SIG_IGN);
-    keep_freed_memory();
+    nsma::keep_freed_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error like a full disk
     try {
         const auto arguments = nsma::app::parse(count, words);

@@ -3,6 +3,10 @@
 #include <limits>
 #include <stdexcept>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <coin/IpIpoptApplication.hpp>
 #include <coin/IpSolveStatistics.hpp>
 #include <coin/IpTNLP.hpp>
@@ -265,6 +269,14 @@ SolverOutcome IpoptSolver::solve(const Program& program, const Eigen::VectorXd& 
     outcome.status = adapter->timed_out() ? "Time_Limit_Exceeded" : status_name(status);
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return outcome;
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int kept = 64 << 20;  // bytes
+    mallopt(M_TRIM_THRESHOLD, kept);
+    mallopt(M_TOP_PAD, kept / 4);
+#endif
 }
 
 std::string ipopt_version() { return IPOPT_VERSION; }

@@ -24,8 +24,10 @@ int main(int count, char** words) {
     }
     int status = 0;
     rusage usage{};
-    if (child < 0 || wait4(child, &status, 0, &usage) != child || !WIFEXITED(status) || WEXITSTATUS(status) == 127) {
-        std::fprintf(stderr, "%s: cannot be run\n", words[1]);
+    const bool ended = child > 0 && wait4(child, &status, 0, &usage) == child && WIFEXITED(status);
+    // Of nsma 2 is bad usage; other codes are results.
+    if (!ended || WEXITSTATUS(status) == 127 || WEXITSTATUS(status) == 2) {
+        std::fprintf(stderr, "%s: cannot be run, or not so\n", words[1]);
         return 1;
     }
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;

@@ -33,13 +33,13 @@ for turn in 1 2 3; do
     whole "full spectrum on 2 ranks" mpirun -n 2 "$nsma" sweep "$scene" --quiet --out "$runs/two"
     for table in patterns.csv levels.csv orbits.jsonl; do cmp "$runs/alone/$table" "$runs/two/$table"; done
 done
-whole "full spectrum without relaxations, 12 levels" "$nsma" sweep "$scene" --bound-nodes 0 --quiet --out "$runs/few"
-whole "full spectrum without relaxations, 48 levels" "$nsma" sweep "$runs/levels.toml" --bound-nodes 0 --quiet --out "$runs/many"
+whole "full spectrum without relaxations (12 levels)" "$nsma" sweep "$scene" --bound-nodes 0 --quiet --out "$runs/few"
+whole "full spectrum without relaxations (48 levels)" "$nsma" sweep "$runs/levels.toml" --bound-nodes 0 --quiet --out "$runs/many"
 whole "N = 20 by both solvers" "$nsma" sweep "$runs/twenty.toml" --solver both --bound-nodes 0 --quiet --out "$runs/twenty"
 for m in 50 100 200 400; do
     cells=$((5 * m / 4))
     least=$("$nsma" orbit "$scene" --cells "$cells" --free $((2 * cells + m)) --contact $((2 * cells - m)) --json |
-        sed 's/.*"energy_ratio":\([^,]*\),.*/\1/')
+        sed -n 's/.*"energy_ratio": \([^,]*\),/\1/p')
     whole "one level of m = $m by Ipopt" "$nsma" orbit "$scene" --cells "$cells" --free $((2 * cells + m)) \
         --contact $((2 * cells - m)) --energy "$(echo "$least" | awk '{ printf "%.17g", 1.5 * $1 }')" --solver ipopt
 done
@@ -51,8 +51,8 @@ awk -F, '
     FILENAME ~ /patterns/ { m[$3 "," $4] = $6; next }
     ($4 ~ /ipopt|nlopt/) && m[$1 "," $2] <= 20 { print $4 (($5 < 0) ? " from the level before" : $4 == "ipopt" ? " cold" : "") "," $7 "," $8 * 1000; if ($4 == "ipopt") print "ipopt," $7 "," $8 * 1000 }
 ' "$runs/twenty/patterns.csv" "$runs/twenty/timings.csv" | sort -t, -k1,1 -k3,3g | awk -F, '
-    function row() { if (n) printf "%s,%d,%d,%.3f,%.3f\n", name, n, it[int((n + 1) / 2)], t[int((n + 1) / 2)], t[int(0.9 * n + 0.5)] }
-    BEGIN { print "solver,calls,iterations_of_median,median_ms,p90_ms" }
+    function row() { if (n) printf "%s,%d,%.3f,%d,%.3f\n", name, n, t[int((n + 1) / 2)], it[int((n + 1) / 2)], t[int(0.9 * n + 0.5)] }
+    BEGIN { print "solver,calls,median_ms,its_iterations,p90_ms" }
     $1 != name { row(); name = $1; n = 0 }
     { ++n; it[n] = $2; t[n] = $3 }
     END { row() }' > "$out/solves.csv"
@@ -62,7 +62,8 @@ table() { awk -F, 'NR == 1 { gsub(/_/, " ") } { line = "|"; for (i = 1; i <= NF;
 {
     echo "# How time grows"
     echo
-    echo "Written by tests/bench/run.sh. Times are those of one core of a machine that should do nothing else; its load at the end: $(cut -d' ' -f1-3 /proc/loadavg)."
+    echo "Written by tests/bench/run.sh. Times are those of a machine that should do nothing else; its load at the end:"
+    echo "$(cut -d' ' -f1-3 /proc/loadavg)."
     echo
     echo "- machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores"
     echo "- compiler: $(c++ --version | head -1), $(sed -n 's/^CMAKE_BUILD_TYPE[^=]*=//p' "$build/CMakeCache.txt")"
