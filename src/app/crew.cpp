@@ -138,6 +138,7 @@ struct Crew::Implementation {
         if (child <= 0) return;
         close(in);
         close(out);
+        in = out = -1;
         while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
         }
         child = -1;

@@ -51,12 +51,15 @@ void share(Crew& crew, const Scene& scene, SweepQueue& queue, const std::functio
         if (crew.present(worker)) idle.insert(worker);
     }
     std::size_t present = idle.size();
+    const auto give = [&](int worker) {
+        const auto units = stop.load() ? std::vector<WorkUnit>() : queue.next(worker);
+        if (units.empty()) return false;
+        crew.hand(worker, packed(units));
+        idle.erase(worker);
+        return true;
+    };
     while (present > 0) {
-        for (auto worker = idle.begin(); worker != idle.end() && !stop.load();) {
-            const auto units = queue.next(*worker);
-            if (units.empty()) break;
-            crew.hand(*worker, packed(units));
-            worker = idle.erase(worker);
+        while (!idle.empty() && give(*idle.begin())) {
         }
         // What is in hand is kept also after stop.
         if (idle.size() == present && (queue.finished() || stop.load())) return;
@@ -64,11 +67,13 @@ void share(Crew& crew, const Scene& scene, SweepQueue& queue, const std::functio
         if (!message) continue;
         if (message->lost) {
             queue.lost(message->worker);
+            idle.erase(message->worker);
             --present;
             continue;
         }
         keep(unpacked_results(message->bytes, scene.bar));
         idle.insert(message->worker);
+        (void)give(message->worker);  // it has its pattern at hand
     }
 }
 

@@ -164,7 +164,7 @@ public:
             const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(fixed + nu * contact_matrix_,
                                                                           Eigen::EigenvaluesOnly);
             const double scale = spectrum.eigenvalues().cwiseAbs().maxCoeff();
-            const double rounding = 1e-14 * scale;  // eigenvalues are good to a few units of n eps
+            const double rounding = 1e-13 * scale;  // of the change of basis and of the eigenvalues: some n eps, n <= 48
             return spectrum.eigenvalues()[0] - rounding - nu * contact_square_;
         };
         if (contact_.size() == 0) return value(0);

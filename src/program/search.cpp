@@ -30,7 +30,7 @@ constexpr int warm_start = -1;
 
 }  // namespace
 
-bool ipopt_goes_first(const OrbitSolverOptions& options, int kernel_dimension) {
+bool ipopt_is_usual(const OrbitSolverOptions& options, int kernel_dimension) {
     return options.solvers == SolverChoice::ipopt || options.solvers == SolverChoice::both ||
            (options.solvers == SolverChoice::proof && kernel_dimension > segment_limit);
 }
@@ -118,7 +118,8 @@ void Search::search_with_ipopt() {
         const int number = ipopt_.run.name.empty() ? ipopt_start() : next_++;
         const auto begin = start(number);
         if (!begin) return;
-        attempt(*begin, "ipopt", number, ipopt_);
+        // Where the orbit of another level leads nowhere, the first point of this one is still due.
+        if (!attempt(*begin, "ipopt", number, ipopt_) && number == warm_start) attempt(*start(0), "ipopt", 0, ipopt_);
         if (with_nlopt_ && nlopt_.usable && not_worse(ipopt_, nlopt_)) return;
     }
 }
@@ -137,16 +138,16 @@ void Search::ask(const Best& better, Best& worse, const char* solver) {
 void Search::settle() {
     if (ranked().empty()) return;
     if (!bounded_ && !ranked().front()->optimality.global) relax(*ranked().front());
-    const auto found_so_far = ranked();
-    if (unsolved(found_so_far.front())) {
-        if (!ipopt_.run.name.empty()) ask(*found_so_far.front(), ipopt_, "ipopt");
-        if (!nlopt_.run.name.empty()) ask(*found_so_far.front(), nlopt_, "nlopt");
+    const Best* const best = ranked().front();
+    if (unsolved(best)) {
+        if (!ipopt_.run.name.empty()) ask(*best, ipopt_, "ipopt");
+        if (!nlopt_.run.name.empty()) ask(*best, nlopt_, "nlopt");
     }
     double value = product_bound_.value_or(-infinity);
     if (bounded_) value = std::max(value, bounded_->value);
-    for (const Best* best : found_so_far) {  // the Lagrangian's bounds are of the program, not of the point
-        if (best->optimality.lower_bound && program_.objective_unit > 0) {
-            value = std::max(value, *best->optimality.lower_bound / program_.objective_unit);
+    for (const Best* one : ranked()) {  // the Lagrangian's bounds are of the program, not of the point
+        if (one->optimality.lower_bound && program_.objective_unit > 0) {
+            value = std::max(value, *one->optimality.lower_bound / program_.objective_unit);
         }
     }
     for (Best* one : {&ipopt_, &nlopt_, &relaxed_, &unaided_}) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -60,12 +61,12 @@ namespace {
 
 // The scene of a folder that has none, unless another process gives it one at the same time.
 void write_scene(const fs::path& copy, const std::string& text) {
-    const fs::path own = fmt::format("{}.{}", copy.string(), getpid());
+    const fs::path own = fmt::format("{}.{:x}", copy.string(), std::random_device()());
     write_whole(own, text);
     std::error_code code;
     fs::create_hard_link(own, copy, code);  // unlike a renaming, never over another's
-    if (code && !fs::exists(copy)) {
-        code.clear();
+    std::error_code unused;
+    if (code && !fs::exists(copy, unused)) {
         fs::rename(own, copy, code);  // a file system without links
         if (code) fail(copy, fmt::format("cannot be written: {}", code.message()));
     }
@@ -84,9 +85,9 @@ void prepare_results_folder(const fs::path& folder, const Scene& scene, std::spa
     if (code) fail(folder, fmt::format("cannot be made: {}", code.message()));
 
     const fs::path copy = folder / "scene.toml";
-    if (!fs::exists(copy)) {
+    if (!fs::exists(copy, code)) {
         for (const char* file : files) {
-            if (fs::exists(folder / file)) {
+            if (fs::exists(folder / file, code) && !fs::exists(copy, code)) {
                 fail(folder / file,
                      "is in the way: the folder has no scene.toml that would tell its scene");
             }

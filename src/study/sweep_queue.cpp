@@ -97,9 +97,10 @@ void SweepQueue::decided(const WorkResult& result) {
     open.places.assign(at(open.left), State::left);
     if (nearest_) {
         open.strand_length = std::max(last_place_, 1);
-    } else if (ipopt_goes_first(options_, result.record->kernel_dimension)) {
+    } else if (ipopt_is_usual(options_, result.record->kernel_dimension)) {
         open.strand_length = warm_strand;
     }
+    open.available = strands(open);
     open.workers = static_cast<int>(
         std::count_if(seats_.begin(), seats_.end(), [&](const auto& seat) { return seat.second.pattern == result.pattern; }));
     if (open.workers == 0) unheld_.insert(result.pattern);
@@ -125,17 +126,23 @@ void SweepQueue::done(const WorkResult& result) {
     if (handed) strand.handed = false;
     const int end = end_place_of(open, number);
     while (strand.next < end && state_at(open, strand.next) == State::done) ++strand.next;
-    if (strand.next == end) {
+    const bool finished = strand.next == end;
+    if (handed && !finished) ++open.available;
+    if (!handed && !strand.handed && finished) --open.available;
+    if (finished) {
         open.begun.erase(number);
         open.waiting.erase(number);
         return;
     }
-    if (result.answer->orbit) strand.before.assign(result.answer->orbit->beta.begin(), result.answer->orbit->beta.end());
+    if (result.answer->orbit && result.place < strand.next) {
+        strand.before.assign(result.answer->orbit->beta.begin(), result.answer->orbit->beta.end());
+    }
     if (!strand.handed) open.waiting.insert(number);
 }
 
 std::optional<WorkUnit> SweepQueue::take(long pattern, int worker) {
     Open& open = open_.at(pattern);
+    if (open.available == 0) return std::nullopt;
     int number = -1;
     if (!open.waiting.empty()) {
         // Its own strand before another.
@@ -145,16 +152,15 @@ std::optional<WorkUnit> SweepQueue::take(long pattern, int worker) {
         number = first != open.waiting.end() ? *first : *open.waiting.begin();
         open.waiting.erase(number);
     } else {
-        const int end = strands(open);
         const auto passed = [&](int strand) {
             return state_at(open, first_place_of(open, strand)) != State::left || open.begun.contains(strand);
         };
-        while (open.fresh < end && passed(open.fresh)) ++open.fresh;
-        if (open.fresh == end) return std::nullopt;
+        while (passed(open.fresh)) ++open.fresh;
         number = open.fresh++;
     }
     Strand& strand = begin(open, number);
     strand.handed = true;
+    --open.available;
     state_at(open, strand.next) = State::handed;
     WorkUnit unit{pattern, strand.next, strand.before};
     sit(worker, {pattern, unit.place, {}});
@@ -184,19 +190,10 @@ std::vector<WorkUnit> SweepQueue::decide(int worker) {
 
 // With the pattern that has most strands left.
 std::optional<WorkUnit> SweepQueue::help(int worker) {
-    for (;;) {
-        long of = -1;
-        std::size_t most = 0;
-        for (const auto& [pattern, open] : open_) {
-            const std::size_t strands_left = at(strands(open) - open.fresh) + open.waiting.size();
-            if (strands_left > most) {
-                most = strands_left;
-                of = pattern;
-            }
-        }
-        if (of < 0) return std::nullopt;
-        if (auto unit = take(of, worker)) return unit;  // else all that were counted are done, and now passed over
-    }
+    const auto most = std::max_element(open_.begin(), open_.end(), [](const auto& a, const auto& b) {
+        return a.second.available < b.second.available;
+    });
+    return most == open_.end() ? std::nullopt : take(most->first, worker);
 }
 
 std::vector<WorkUnit> SweepQueue::next(int worker) {
@@ -229,6 +226,7 @@ void SweepQueue::lost(int worker) {
     state_at(open->second, seat.place) = State::left;
     open->second.begun.at(strand).handed = false;
     open->second.waiting.insert(strand);
+    ++open->second.available;
 }
 
 }  // namespace nsma

@@ -10,7 +10,7 @@
 namespace nsma {
 namespace {
 
-// Levels that a verdict brings with it: a message of their answers stays below a megabyte.
+// Levels that the verdicts of one message bring with them: it stays below a megabyte.
 constexpr int most_brought = 1024;
 
 std::size_t at(long index) { return static_cast<std::size_t>(index); }
@@ -99,10 +99,10 @@ WorkResult SweepWorker::run(const WorkUnit& unit) {
 
 std::vector<WorkResult> SweepWorker::run(const std::vector<WorkUnit>& units) {
     std::vector<WorkResult> results;
+    int brought = 0;
     for (const WorkUnit& unit : units) {
         results.push_back(run(unit));
         if (unit.place >= 0 || problem_.verdict != Verdict::admissible || is_extreme(scene_.objective)) continue;
-        int brought = 0;
         for (std::size_t level = 0; level < scene_.levels.size() && brought < most_brought; ++level) {
             if (!solver_.outside(problem_.interval, scene_.levels[level])) continue;
             results.push_back(run(WorkUnit{unit.pattern, static_cast<int>(level) + 1, {}}));

@@ -31,7 +31,9 @@ int main(int count, char** words) {
         return 1;
     }
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-    const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
     std::printf("%.2f,%.2f,%.1f\n", wall.count(), seconds(usage.ru_utime) + seconds(usage.ru_stime),
                 static_cast<double>(usage.ru_maxrss) / 1024);
     return 0;

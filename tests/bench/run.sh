@@ -43,15 +43,25 @@ for m in 50 100 200 400; do
     whole "one level of m = $m by Ipopt" "$nsma" orbit "$scene" --cells "$cells" --free $((2 * cells + m)) \
         --contact $((2 * cells - m)) --energy "$(echo "$least" | awk '{ printf "%.17g", 1.5 * $1 }')" --solver ipopt
 done
-"$tools/nsma_schedule" "$runs/alone/timings.csv" 1000000 2e-4 2e-6 > "$out/schedule.csv"
+for service in 2e-4 5e-5; do
+    "$tools/nsma_schedule" "$runs/alone/timings.csv" 1000000 $service 2e-6 > "$runs/schedule-$service.csv"
+done
+cut -d, -f5 "$runs/schedule-5e-5.csv" | sed 's/$/_at_50_us/; 2,$s/_at_50_us//' |
+    paste -d, "$runs/schedule-2e-4.csv" - > "$out/schedule.csv"
 
 # Calls of each solver in the sweep of N = 20, patterns with m <= 20.
 awk -F, '
     /^#/ || /^cells/ || /^free_steps/ { next }
     FILENAME ~ /patterns/ { m[$3 "," $4] = $6; next }
-    ($4 ~ /ipopt|nlopt/) && m[$1 "," $2] <= 20 { print $4 (($5 < 0) ? " from the level before" : $4 == "ipopt" ? " cold" : "") "," $7 "," $8 * 1000; if ($4 == "ipopt") print "ipopt," $7 "," $8 * 1000 }
+    $4 ~ /ipopt|nlopt/ && m[$1 "," $2] <= 20 {
+        print $4 "," $7 "," $8 * 1000
+        if ($4 != "ipopt") next
+        print $4 ($5 < 0 ? " from the level before" : $5 == 0 ? " from a point of the level" : " again") "," $7 "," $8 * 1000
+    }
 ' "$runs/twenty/patterns.csv" "$runs/twenty/timings.csv" | sort -t, -k1,1 -k3,3g | awk -F, '
-    function row() { if (n) printf "%s,%d,%.3f,%d,%.3f\n", name, n, t[int((n + 1) / 2)], it[int((n + 1) / 2)], t[int(0.9 * n + 0.5)] }
+    function row() {
+        if (n) printf "%s,%d,%.3f,%d,%.3f\n", name, n, t[int((n + 1) / 2)], it[int((n + 1) / 2)], t[int(0.9 * n + 0.5)]
+    }
     BEGIN { print "solver,calls,median_ms,its_iterations,p90_ms" }
     $1 != name { row(); name = $1; n = 0 }
     { ++n; it[n] = $2; t[n] = $3 }
@@ -110,7 +120,8 @@ What is measured, and what to read in it:
   exact proof of the interval included. At m = 48 relaxations, which larger programs do without, take most of the time, so
   the exponent says little.
 - `serve`: what rank 0 does for one answer: read, store and commit, choose and pack the next unit; a million levels a
-  pattern. `serve_verdicts`: reading and storing all verdicts of N = 12 and 48, 60 and 1238 messages.
+  pattern. `serve_verdicts`: reading and storing all verdicts of N = 12 and 48 (`scale.csv` has
+  the number of messages).
 
 ## Whole runs
 
@@ -122,15 +133,17 @@ END
 
 The full spectrum (N = 12, 12 levels) alone and on two ranks takes turns, so that a machine that changes its speed
 changes it for both; their tables are compared byte by byte. mpirun waits two seconds after an exit code other than 0
-(here 4: two levels where the solvers disagree).
+(here 4: levels where the solvers disagree).
 
-Calls of the solvers in the sweep of N = 20, m <= 20 (wall time; the first level of eight starts cold):
+Calls of the solvers in the sweep of N = 20, m <= 20 (wall time; the first level of eight starts from a
+point of its own, and so do further starts where the solvers differ):
 
 END
     table "$out/solves.csv"
     cat <<'END'
 
-A million answers on 1 to 1000 ranks, from the times of the sweep alone, 0.2 ms at rank 0 for a message and 2 us latency:
+A million answers on 1 to 1000 ranks, from the times of the sweep alone, 0.2 ms at rank 0 for a message
+and 2 us latency; last, with 0.05 ms at rank 0:
 
 END
     table "$out/schedule.csv"

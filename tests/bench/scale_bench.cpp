@@ -164,7 +164,9 @@ void solve_form(benchmark::State& state, bool lifted) {
     IpoptSolver ipopt(SolverOptions{.tolerance = 1e-8, .time_limit = 60.0});
     SolverOutcome outcome;
     for (auto _ : state) outcome = ipopt.solve(program, begin);
-    label(state, {{"iterations", static_cast<double>(outcome.iterations)}, {"violation", program.violation(outcome.x)}, {"nonzeros", static_cast<double>(program.inequalities.nonZeros() + program.equalities.nonZeros())}});
+    label(state, {{"iterations", static_cast<double>(outcome.iterations)},
+                  {"violation", program.violation(outcome.x)},
+                  {"nonzeros", static_cast<double>(program.inequalities.nonZeros() + program.equalities.nonZeros())}});
 }
 void solve_condensed(benchmark::State& state) { solve_form(state, false); }
 void solve_lifted(benchmark::State& state) { solve_form(state, true); }
@@ -184,7 +186,8 @@ void whole_orbit(benchmark::State& state) {
         OrbitSolver solver(options);
         answer = solver.solve(Bar{}, problem, {.level = 1.5 * *problem.interval.least, .reference = {}});
     }
-    label(state, {{"admissible", answer.verdict == Verdict::admissible}, {"gap", answer.optimality ? answer.optimality->gap : 1.0}});
+    label(state, {{"admissible", answer.verdict == Verdict::admissible},
+                  {"gap", answer.optimality ? answer.optimality->gap : 1.0}});
 }
 BENCHMARK(whole_orbit)->Arg(48)->Arg(96)->Arg(192)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
 

@@ -48,7 +48,8 @@ TEST(SweepWorker, NearestStaysNearTheOrbitBefore) {
     const WorkResult from_before = worker.run(WorkUnit{0, 2, before});
     const WorkResult from_least = worker.run(WorkUnit{0, 2, {}});
     const auto distance = [&](const WorkResult& result) {
-        return (result.answer->orbit->beta - Eigen::Map<const Eigen::VectorXd>(before.data(), static_cast<Eigen::Index>(before.size()))).norm();
+        const Eigen::Map<const Eigen::VectorXd> there(before.data(), static_cast<Eigen::Index>(before.size()));
+        return (result.answer->orbit->beta - there).norm();
     };
     EXPECT_LT(distance(from_before), distance(from_least));
 }

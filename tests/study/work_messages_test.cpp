@@ -86,7 +86,8 @@ TEST(WorkMessages, UnitsComeBack) {
 }
 
 TEST(WorkMessages, OtherBytesAreRefused) {
-    const std::string good = packed(std::vector{WorkResult{0, 0, std::nullopt, OrbitAnswer{}}, WorkResult{0, -1, PatternRecord{}, std::nullopt}});
+    const std::string good = packed(
+        std::vector{WorkResult{0, 0, std::nullopt, OrbitAnswer{}}, WorkResult{0, -1, PatternRecord{}, std::nullopt}});
     for (std::size_t size = 0; size < good.size(); ++size) {
         EXPECT_THROW((void)unpacked_results(good.substr(0, size), Bar{}), std::invalid_argument) << size;
     }

@@ -51,9 +51,8 @@ struct OrbitSolverOptions {
     SolverOptions solver;
 };
 
-/// Whether Ipopt is the first solver to be asked for a pattern of this kernel dimension, so that OrbitRequest::start
-/// saves time.
-[[nodiscard]] bool ipopt_goes_first(const OrbitSolverOptions& options, int kernel_dimension);
+/// Whether Ipopt is asked at most levels of a pattern of this kernel dimension, so that OrbitRequest::start saves time.
+[[nodiscard]] bool ipopt_is_usual(const OrbitSolverOptions& options, int kernel_dimension);
 
 struct OrbitRequest {
     std::optional<double> level;  ///< E/E_unit, > 0; absent: the least-energy orbit

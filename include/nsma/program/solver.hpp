@@ -41,8 +41,9 @@ private:
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// Has the process keep memory that was freed (up to 64 MB, with glibc): Ipopt's linear solver takes and gives back its own
-/// in every iteration, and is up to twice as fast then. For the start of a program; concerns all of it.
+/// Has the process keep memory that was freed (up to 64 MB, with glibc). Ipopt's linear solver takes and gives back its own
+/// in every iteration, NLopt's L-BFGS in every call; fresh pages take longer than their work. For the start of a program;
+/// concerns all of it.
 void keep_freed_memory();
 
 enum class NloptMethod {

@@ -15,8 +15,8 @@ namespace nsma {
 /// the longest first (m n_T estimates the work); at last, levels of patterns that others hold.
 ///
 /// Levels that start from each other's orbits form a strand, which one worker has at a time: all
-/// levels of a pattern for `nearest`; eight in a row where Ipopt goes first, so that most of them
-/// begin near their optimum and a long list of levels still divides among many workers; else one.
+/// levels of a pattern for `nearest`; eight in a row where Ipopt is usually asked, so that most of
+/// them begin near their optimum and a long list of levels still divides among many workers; else one.
 /// A level's result so depends on its strand alone, not on who did what when.
 ///
 /// Verdicts take microseconds: of the longest first, several are handed out together.
@@ -51,9 +51,10 @@ private:
         std::vector<State> places;  // from first_place_ on
         int left = 0;               // places not done
         int strand_length = 1;
-        int fresh = 0;  // no strand from here on was handed out
+        int available = 0;  // strands neither done nor handed
         std::map<int, Strand> begun;
         std::set<int> waiting;  // those of them that are not handed
+        int fresh = 0;          // the strands before it are begun or done
         int workers = 0;        // whose seat is here
     };
     // What a worker has in hand, or had last.

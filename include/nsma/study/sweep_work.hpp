@@ -32,8 +32,8 @@ class SweepWorker {
 public:
     SweepWorker(const Scene& scene, const OrbitSolverOptions& options);
     [[nodiscard]] WorkResult run(const WorkUnit& unit);
-    /// Several in their order. A verdict brings with it the answers for all levels outside the pattern's interval, which
-    /// are known with it.
+    /// Several in their order. A verdict brings with it the answers for levels outside the pattern's interval, which are
+    /// known with it: up to 1024 in all.
     [[nodiscard]] std::vector<WorkResult> run(const std::vector<WorkUnit>& units);
 
 private:
