@@ -119,7 +119,9 @@ void Search::search_with_ipopt() {
         const auto begin = start(number);
         if (!begin) return;
         // Where the orbit of another level leads nowhere, the first point of this one is still due.
-        if (!attempt(*begin, "ipopt", number, ipopt_) && number == warm_start) attempt(*start(0), "ipopt", 0, ipopt_);
+        if (!attempt(*begin, "ipopt", number, ipopt_) && number == warm_start) {
+            if (const auto first = start(0)) attempt(*first, "ipopt", 0, ipopt_);
+        }
         if (with_nlopt_ && nlopt_.usable && not_worse(ipopt_, nlopt_)) return;
     }
 }
@@ -134,7 +136,8 @@ void Search::ask(const Best& better, Best& worse, const char* solver) {
 }
 
 // Where the Lagrangian leaves a gap: bounds the objective by relaxations, whose solutions are starts that find better
-// optima. Solvers used so far are asked about a best orbit that is not theirs. The bound is found once and holds for whatever comes later.
+// optima. Solvers used so far are asked about a best orbit that is not theirs. The bound is found once and holds for
+// whatever comes later.
 void Search::settle() {
     if (ranked().empty()) return;
     if (!bounded_ && !ranked().front()->optimality.global) relax(*ranked().front());

@@ -308,6 +308,21 @@ TEST(OrbitSolver, IpoptStartsFromAnOrbitAtALevelNearby) {
     EXPECT_EQ(first(warm, "nlopt-slsqp").objective, first(cold, "nlopt-slsqp").objective);
 }
 
+TEST(OrbitSolver, AUselessStartIsMadeGoodByThatOfTheLevel) {
+    const Pattern pattern{20, 48, 16};
+    const double least = least_energy(pattern, 1);
+    OrbitSolverOptions options = unbounded();
+    options.solvers = SolverChoice::ipopt;
+    options.starts = 1;
+    options.raw_violation = -1;  // nothing is good enough
+    const auto near = solve(pattern, 1, {.level = 1.6 * least}, unbounded());
+    const auto answer = solve(pattern, 1, {.level = 1.5 * least, .start = near.orbit->beta}, options);
+    std::vector<int> starts;
+    for (const auto& run : answer.solvers) starts.push_back(run.start);
+    std::sort(starts.begin(), starts.end());
+    EXPECT_EQ(starts, (std::vector<int>{-1, 0}));
+}
+
 TEST(OrbitSolver, AStartOfAnotherPatternIsMisuse) {
     const Pattern pattern{20, 48, 16};
     const double level = 1.5 * least_energy(pattern, 1);
