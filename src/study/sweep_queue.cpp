@@ -123,12 +123,11 @@ void SweepQueue::done(const WorkResult& result) {
     }
     const int number = strand_of(open, result.place);
     Strand& strand = begin(open, number);
-    if (handed) strand.handed = false;
     const int end = end_place_of(open, number);
     while (strand.next < end && state_at(open, strand.next) == State::done) ++strand.next;
     const bool finished = strand.next == end;
     if (handed && !finished) ++open.available;
-    if (!handed && !strand.handed && finished) --open.available;
+    if (!handed && finished) --open.available;
     if (finished) {
         open.begun.erase(number);
         open.waiting.erase(number);
@@ -137,7 +136,7 @@ void SweepQueue::done(const WorkResult& result) {
     if (result.answer->orbit && result.place < strand.next) {
         strand.before.assign(result.answer->orbit->beta.begin(), result.answer->orbit->beta.end());
     }
-    if (!strand.handed) open.waiting.insert(number);
+    open.waiting.insert(number);
 }
 
 std::optional<WorkUnit> SweepQueue::take(long pattern, int worker) {
@@ -158,8 +157,7 @@ std::optional<WorkUnit> SweepQueue::take(long pattern, int worker) {
         while (passed(open.fresh)) ++open.fresh;
         number = open.fresh++;
     }
-    Strand& strand = begin(open, number);
-    strand.handed = true;
+    const Strand& strand = begin(open, number);
     --open.available;
     state_at(open, strand.next) = State::handed;
     WorkUnit unit{pattern, strand.next, strand.before};
@@ -224,7 +222,6 @@ void SweepQueue::lost(int worker) {
     if (open == open_.end() || state_at(open->second, seat.place) != State::handed) return;
     const int strand = strand_of(open->second, seat.place);
     state_at(open->second, seat.place) = State::left;
-    open->second.begun.at(strand).handed = false;
     open->second.waiting.insert(strand);
     ++open->second.available;
 }

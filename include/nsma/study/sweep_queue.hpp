@@ -43,7 +43,6 @@ private:
     // A strand begun and not done.
     struct Strand {
         int next = 0;                // place; those before it are done
-        bool handed = false;
         std::vector<double> before;  // beta of its last orbit
     };
     // An admissible pattern with places left.
