@@ -69,6 +69,14 @@ std::optional<std::array<double, 2>> checked_period(const std::vector<double>& p
     return std::array{period[0], period[1]};
 }
 
+void add_all_kinds(CLI::App& command, bool& all_kinds) {
+    command.add_flag("--all-kinds", all_kinds, "also solve patterns whose orbits never press against the wall (free) or never leave it (stuck)");
+}
+
+void add_distinct(CLI::App& command, bool& distinct) {
+    command.add_flag("--distinct", distinct, "leave out of levels.csv and orbits.jsonl what a row above has under another label");
+}
+
 void add_quiet(CLI::App& command, bool& quiet) {
     command.add_flag("--quiet", quiet, "no progress on stderr");
 }
@@ -77,7 +85,7 @@ void add_quiet(CLI::App& command, bool& quiet) {
 struct SolverWords {
     std::string solver = "proof";
     void add(CLI::App& command, OrbitSolverOptions& options) {
-        command.add_option("--solver", solver, "proof: both against each other where no cheaper answer is proved the best (default); both: always; ipopt; nlopt")
+        command.add_option("--solver", solver, "proof: closed forms, a solver only where they prove nothing (default); both: Ipopt and NLopt as well, against each other; ipopt; nlopt")
             ->check(CLI::Validator(
                 [](const std::string& text) -> std::string {
                     if (text == "ipopt" || text == "nlopt" || text == "both" || text == "proof") return {};
@@ -87,9 +95,6 @@ struct SolverWords {
         command.add_option("--starts", options.starts,
                            "starts per solver while the optimum is not proved (default 8; a quarter of them above 64 unknowns)")
             ->check(whole(1, 10'000));
-        command.add_option("--bound-nodes", options.bound_nodes,
-                           "relaxations spent on proving one orbit the best (default 32; 0: none; an eighth of them above 10 unknowns, none above 48)")
-            ->check(whole(0, 1'000'000));
     }
     [[nodiscard]] SolverChoice choice() const {
         if (solver == "ipopt") return SolverChoice::ipopt;
@@ -136,8 +141,8 @@ Arguments parse(int count, const char* const* words) {
     add_period(*scan_command, period);
     std::string method = "certified";
     scan_command->add_option("--method", method,
-                             "certified (default), linear (linear programs for what integers leave) or integers (alone)")
-        ->check(CLI::IsMember({"certified", "linear", "integers"}));
+                             "certified (default: every verdict with its proof) or integers (verdicts alone)")
+        ->check(CLI::IsMember({"certified", "integers"}));
     scan_command->add_flag("--csv", scan.csv, "CSV on stdout instead of a table");
     add_quiet(*scan_command, scan.quiet);
     scan_command->footer("Examples:\n"
@@ -169,6 +174,8 @@ Arguments parse(int count, const char* const* words) {
     sweep_command->add_option("SCENE", sweep.scene_file, "scene file (TOML)")->required();
     sweep_command->add_option("--out", sweep.out, "folder for the results; made if missing")->required();
     sweep_words.add(*sweep_command, sweep.solver);
+    add_all_kinds(*sweep_command, sweep.all_kinds);
+    add_distinct(*sweep_command, sweep.distinct);
     sweep_command->add_flag("--resume", sweep.resume, "go on with what the folder holds; without it all is done anew");
     add_quiet(*sweep_command, sweep.quiet);
     sweep_command->footer("Examples:\n  nsma sweep problems/first-mode.toml --out out/first-mode\n"
@@ -177,6 +184,7 @@ Arguments parse(int count, const char* const* words) {
     ExportArguments exported;
     auto* export_command = app.add_subcommand("export", "write the tables and the summary of a stored sweep again");
     export_command->add_option("DIR", exported.folder, "folder of a sweep")->required();
+    add_distinct(*export_command, exported.distinct);
     export_command->footer("Example:\n  nsma export out/first-mode");
 
     AccuracyArguments accuracy;
@@ -202,6 +210,7 @@ Arguments parse(int count, const char* const* words) {
         ->check(objective_validator);
     sensitivity_command->add_option("--out", sensitivity.out, "folder for the results; made if missing")->required();
     sensitivity_words.add(*sensitivity_command, sensitivity.solver);
+    add_all_kinds(*sensitivity_command, sensitivity.all_kinds);
     add_quiet(*sensitivity_command, sensitivity.quiet);
     sensitivity_command->footer("Examples:\n"
                                 "  nsma sensitivity problems/first-mode.toml --out out/sensitivity\n"
@@ -252,7 +261,7 @@ Arguments parse(int count, const char* const* words) {
 
     if (*scan_command) {
         scan.period = checked_period(period);
-        if (method != "certified") scan.method = method == "linear" ? ScanMethod::linear : ScanMethod::integers;
+        if (method == "integers") scan.method = ScanMethod::integers;
         return scan;
     }
     if (*orbit_command) {

@@ -40,12 +40,15 @@ struct SweepArguments {
     std::string scene_file;
     std::string out;
     OrbitSolverOptions solver;
+    bool all_kinds = false;  ///< also free and stuck patterns
+    bool distinct = false;   ///< one row a motion
     bool resume = false;  ///< go on with what the folder holds
     bool quiet = false;
 };
 
 struct ExportArguments {
     std::string folder;
+    bool distinct = false;
 };
 
 struct AccuracyArguments {
@@ -63,6 +66,7 @@ struct SensitivityArguments {
     std::optional<Objective> objective;
     std::string out;
     OrbitSolverOptions solver;
+    bool all_kinds = false;
     bool quiet = false;
 };
 

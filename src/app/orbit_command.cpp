@@ -13,6 +13,15 @@ std::string energy_text(double energy, bool closed) {
     return closed ? fmt::format("{:.10g} J", energy) : fmt::format("{:.10g} E_g", energy);
 }
 
+std::string_view meaning(PatternKind kind) {
+    switch (kind) {
+        case PatternKind::contact: return "its orbits press against the wall and leave it";
+        case PatternKind::free: return "no orbit presses against the wall; a free vibration that grazes it, not a contact motion";
+        case PatternKind::stuck: break;
+    }
+    return "no orbit leaves the wall; a vibration with the end held, not a contact motion";
+}
+
 // What presolve took from the conditions before any program was built.
 void print_presolve(const Reduction& reduction) {
     const RemovalCounts& removed = reduction.removed;
@@ -29,6 +38,7 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
     fmt::print("pattern       r = {}, p = {}, N = {}: m = {}, T/tau = {:.6g}, omega/omega_1 = {:.6g}\n",
                pattern.free_steps, pattern.contact_steps, pattern.cells, answer.kernel_dimension,
                pattern.period_ratio(), pattern.frequency_ratio());
+    if (answer.kind) fmt::print("kind          {}: {}\n", name(*answer.kind), meaning(*answer.kind));
     fmt::print("verdict       {}{}{}{}\n", name(answer.verdict), answer.verdict_proved ? ", proved" : "",
                answer.reason.empty() ? "" : ": ", answer.reason);
     if (answer.interval.least) {
@@ -50,9 +60,13 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
     fmt::print("replay        periodicity {:.1e}, COND1 {:.1e}, COND2 {:.1e}, COND3 {:.1e}, energy {:.1e} (relative)\n",
                violations.periodicity, violations.cond1, violations.cond2, violations.cond3, violations.energy);
     const auto& kind = *answer.classification;
-    fmt::print("kind          minimal period {} steps, {} silent contact steps, {} touches in flight, {} support\n",
-               kind.minimal_period_steps, kind.silent_contact_steps, kind.wall_touches,
+    fmt::print("motion        {}minimal period {} steps, {} silent contact steps, {} touches in flight, {} support\n",
+               kind.forceless ? "no force, " : "", kind.minimal_period_steps, kind.silent_contact_steps, kind.wall_touches,
                kind.full_support ? "full" : "partial");
+    if (const auto& label = kind.same_motion_as) {
+        fmt::print("also          r = {}, p = {}, {} steps later{}\n", label->free_steps, label->contact_steps, label->shift_steps,
+                   label->reversed ? ", backward in time" : "");
+    }
     fmt::print("peak force    {:.6g} N\n", contact_force(*answer.orbit).cwiseAbs().maxCoeff());
     if (const auto& optimality = answer.optimality; optimality && optimality->lower_bound) {
         fmt::print("bound         {:.10g}, {}\n", *optimality->lower_bound,

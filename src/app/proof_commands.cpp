@@ -1,3 +1,4 @@
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -40,7 +41,7 @@ int run(const ProveArguments& arguments, const std::atomic<bool>& stop) {
     long proved = 0;
     long exact = 0;
     long admissible = 0;
-    double worst_gap = 0;
+    std::array<long, pattern_kinds.size()> kinds{};
     {
         Progress progress("prove", arguments.quiet);
         for (const auto& pattern : patterns) {
@@ -57,15 +58,15 @@ int run(const ProveArguments& arguments, const std::atomic<bool>& stop) {
             if (problem.verdict == Verdict::admissible) {
                 ++admissible;
                 if (proof.exact_greatest() || scene.bar.gap_sign() == 0) ++exact;
-                worst_gap = std::max(worst_gap, proof.bound_gap);
+                ++kinds.at(static_cast<std::size_t>(*problem.kind));
             }
             progress.show(done, static_cast<long>(patterns.size()));
         }
     }
     file.flush();
     if (!file) throw InputError(arguments.out + ": expected room to write, got an error");
-    fmt::print("{} patterns, {} proved; {} admissible, greatest energy exact for {}, largest gap {:.1e}\ncertificates are in {}\n",
-               done, proved, admissible, exact, worst_gap, arguments.out);
+    fmt::print("{} patterns, {} proved; {} admissible ({} contact, {} free, {} stuck), greatest energy exact for {}\ncertificates are in {}\n",
+               done, proved, admissible, kinds[0], kinds[1], kinds[2], exact, arguments.out);
     std::fflush(stdout);
     if (stop.load()) return exit_interrupted;
     return proved == done ? exit_done : exit_solver;

@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -37,6 +38,7 @@ int run(const ScanArguments& arguments, const std::atomic<bool>& stop) {
     std::vector<PatternRecord> shown;
     long done = 0;
     int admissible = 0;
+    std::array<int, pattern_kinds.size()> kinds{};
     int failed = 0;
     Sieve sieve(scene.mesh.cells, scene.bar.gap_sign());
     SieveCounts removed;
@@ -48,7 +50,10 @@ int run(const ScanArguments& arguments, const std::atomic<bool>& stop) {
                  progress.show(++done, total);
                  const Pattern& pattern = record.pattern;
                  ++removed.of[static_cast<std::size_t>(sieve(pattern.free_steps, pattern.contact_steps).finding)];
-                 if (record.verdict == Verdict::admissible) ++admissible;
+                 if (record.kind) {
+                     ++admissible;
+                     ++kinds.at(static_cast<std::size_t>(*record.kind));
+                 }
                  if (record.verdict == Verdict::failed) {
                      ++failed;
                      fmt::print(stderr, "nsma: ({}, {}): {}\n", record.pattern.free_steps,
@@ -64,8 +69,8 @@ int run(const ScanArguments& arguments, const std::atomic<bool>& stop) {
              [&] { return !stop.load(); }, arguments.method);
     }
     if (!arguments.csv) {
-        fmt::print("{}{} patterns, {} with a nontrivial kernel, {} admissible\n",
-                   scan_table(scene.bar, shown), done, shown.size(), admissible);
+        fmt::print("{}{} patterns, {} with a nontrivial kernel, {} admissible: {} contact, {} free, {} stuck\n",
+                   scan_table(scene.bar, shown), done, shown.size(), admissible, kinds[0], kinds[1], kinds[2]);
         fmt::print("decided in integers: {} trivial kernels, {} with every live class bounded from both sides, "
                    "{} by COND2's row, {} by a COND1 row\n",
                    removed[Finding::trivial], removed[Finding::sign_conflict], removed[Finding::wrong_side],

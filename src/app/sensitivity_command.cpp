@@ -25,6 +25,7 @@ private:
 
 int run(const SensitivityArguments& arguments, const std::atomic<bool>& stop) {
     Scene scene = load_scene({arguments.scene_file, std::nullopt, std::nullopt});
+    if (arguments.all_kinds) scene.all_kinds = true;
     if (arguments.objective) scene.objective = *arguments.objective;
     SensitivityRequest request;
     request.solver = arguments.solver;

@@ -25,13 +25,13 @@ void draw(const std::string& folder) {
 }
 
 // What decides an answer besides scene and software.
-std::string options_text(const OrbitSolverOptions& options) {
+std::string options_text(const OrbitSolverOptions& options, bool all_kinds) {
     const char* solvers = options.solvers == SolverChoice::both    ? "both"
                           : options.solvers == SolverChoice::proof ? "proof"
                           : options.solvers == SolverChoice::ipopt ? "ipopt"
                                                                    : "nlopt";
-    return fmt::format("solver {}, starts {}, bound nodes {}, tolerance {}", solvers, options.starts,
-                       options.bound_nodes, options.solver.tolerance);
+    return fmt::format("solver {}, starts {}, tolerance {}, kinds {}", solvers, options.starts, options.solver.tolerance,
+                       all_kinds ? "all" : "contact");
 }
 
 // A process that only computes.
@@ -80,13 +80,14 @@ void share(Crew& crew, const Scene& scene, SweepQueue& queue, const std::functio
 }  // namespace
 
 int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
-    const Scene scene = load_scene({arguments.scene_file, std::nullopt, std::nullopt});
+    Scene scene = load_scene({arguments.scene_file, std::nullopt, std::nullopt});
+    if (arguments.all_kinds) scene.all_kinds = true;
     Crew crew;
     if (crew.helper()) {
         help(crew, scene, arguments.solver);
         return exit_done;
     }
-    SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver)},
+    SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver, scene.all_kinds)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
     SweepQueue queue(scene, arguments.solver, crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
     if (arguments.resume) store.for_each([&queue](const WorkResult& result) { queue.done(result); });
@@ -113,7 +114,7 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
         store.add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     }
     if (queue.finished()) store.finish();  // also what a kill left complete but not yet under its name
-    const auto [summary, line] = export_sweep(store, arguments.out);
+    const auto [summary, line] = export_sweep(store, arguments.out, arguments.distinct);
     fmt::print("{}{}\n", summary_table(summary), line);
     if (summary.interrupted) {
         std::fflush(stdout);
@@ -122,13 +123,16 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
     draw(arguments.out);
     if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
-    const bool found = summary.levels > 0 ? summary.solved > 0 : summary.admissible > 0;
+    if (summary.left > 0 && summary.left == summary.admissible) {
+        fmt::print(stderr, "nsma: no pattern of the scene is a contact motion; --all-kinds solves the other {}\n", summary.left);
+    }
+    const bool found = summary.levels > 0 ? summary.solved > 0 : summary.admissible > summary.left;
     return found ? exit_done : exit_inadmissible;
 }
 
 int run(const ExportArguments& arguments, const std::atomic<bool>&) {
     const SweepStore store(arguments.folder);
-    fmt::print("{}\n", export_sweep(store, arguments.folder).line);
+    fmt::print("{}\n", export_sweep(store, arguments.folder, arguments.distinct).line);
     return exit_done;
 }
 

@@ -6,31 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "motion_waves.hpp"
 #include "nsma/orbit/conditions.hpp"
 
 namespace nsma {
-
-namespace {
-
-/// Smallest divisor of the period that shifts b_n onto itself within `tolerance`.
-int minimal_period(const Eigen::VectorXd& waves, double tolerance) {
-    const int period = static_cast<int>(waves.size());
-    for (int shift = 1; shift <= period / 2; ++shift) {
-        if (period % shift != 0) {
-            continue;
-        }
-        bool repeats = true;
-        for (int n = 0; repeats && n + shift < period; ++n) {
-            repeats = std::abs(waves[n + shift] - waves[n]) <= tolerance;
-        }
-        if (repeats) {
-            return shift;
-        }
-    }
-    return period;
-}
-
-}  // namespace
 
 Classification classify(const Orbit& orbit, double tolerance) {
     if (!std::isfinite(tolerance) || tolerance < 0.0) {
@@ -40,12 +19,7 @@ Classification classify(const Orbit& orbit, double tolerance) {
     const Kernel& kernel = orbit.kernel;
     const Pattern& pattern = kernel.pattern;
     const int period = pattern.period_steps();
-    Eigen::VectorXd waves(period);  // b_n dt/u
-    for (int n = 0; n < period; ++n) {
-        const int column = kernel.column(n);
-        waves[n] =
-            column >= 0 ? kernel.sign[static_cast<std::size_t>(n)] * orbit.beta[column] : 0.0;
-    }
+    const Eigen::VectorXd waves = motion_waves(orbit);
     const double silence = tolerance * waves.cwiseAbs().maxCoeff();
     const Eigen::VectorXd tip = tip_history(kernel, orbit.beta);
     const int gap_sign = orbit.bar.gap_sign();
@@ -60,7 +34,13 @@ Classification classify(const Orbit& orbit, double tolerance) {
     for (int n = 1; n < pattern.free_steps; ++n) {
         result.wall_touches += std::abs(tip[n] - gap_sign) <= touch;
     }
+    result.forceless = result.silent_contact_steps == pattern.contact_steps;
     result.full_support = kernel.dimension() > 0 && orbit.beta.cwiseAbs().minCoeff() > silence;
+    if (const auto motion = least_label(orbit, tolerance)) {
+        const MotionLabel& label = motion->label;
+        const bool own = label.free_steps == pattern.free_steps && label.contact_steps == pattern.contact_steps && label.shift_steps == 0;
+        if (!own) result.same_motion_as = label;
+    }
     return result;
 }
 

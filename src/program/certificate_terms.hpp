@@ -39,7 +39,7 @@ struct CertificateTerms {
     Rational factor;            ///< E/E_unit = factor |beta|^2
 };
 
-/// The upper bound on |beta|^2 that the certificate's chain or tree proves. Throws Invalid.
+/// The upper bound on |beta|^2 that the certificate's chain proves. Throws Invalid.
 [[nodiscard]] Rational proved_square(const CertificateTerms& terms);
 
 }  // namespace nsma

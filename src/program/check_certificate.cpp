@@ -19,6 +19,7 @@ public:
     void run() {
         switch (certificate_.claim) {
             case Certificate::Claim::trivial:
+                expect_no_kind();
                 if (terms_.dimension != 0) invalid("claim: expected a kernel of dimension 0, got " + std::to_string(terms_.dimension));
                 expect_no_energies("a trivial kernel");
                 return;
@@ -89,7 +90,43 @@ private:
         }
     }
 
+    void expect_no_kind() const {
+        if (certificate_.kind) invalid("kind: expected none but for a nonempty set");
+    }
+
+    // Whether a step of [begin, end) carries a column for which `moves` holds.
+    template <class Moves>
+    [[nodiscard]] bool any_step(int begin, int end, Moves moves) const {
+        for (int n = begin; n < end; ++n) {
+            const int column = terms_.kernel.column(n);
+            if (column >= 0 && moves(static_cast<std::size_t>(column))) return true;
+        }
+        return false;
+    }
+
+    // `witness`: an admissible point, or direction of a closed gap. Where one presses and one moves the tip, a mixture does
+    // both, and by COND1 a tip that moves leaves the wall.
+    void check_kind(const Dense& witness) const {
+        if (!certificate_.kind) invalid("kind: expected contact, free or stuck, got none");
+        const int r = certificate_.pattern.free_steps;
+        const int period = certificate_.pattern.period_steps();
+        const auto live = [&](std::size_t c) { return terms_.signs[c] != Sign::zero; };
+        const auto nonzero = [&](std::size_t c) { return witness[c] != 0; };
+        switch (*certificate_.kind) {
+            case PatternKind::free:
+                if (any_step(r, period, live)) invalid("kind: a contact step carries a wave, so free is not proved");
+                return;
+            case PatternKind::stuck:
+                if (any_step(0, r, live)) invalid("kind: a free step carries a wave, so stuck is not proved");
+                return;
+            case PatternKind::contact: break;
+        }
+        if (!any_step(r, period, nonzero)) invalid("kind: the point does not press against the wall");
+        if (!any_step(0, r, nonzero)) invalid("kind: the point does not leave the wall");
+    }
+
     void check_empty() const {
+        expect_no_kind();
         if (terms_.dimension == 0) invalid("claim: expected a nontrivial kernel, got dimension 0");
         expect_no_energies("an empty set");
         if (certificate_.gap_sign == 0) {
@@ -134,7 +171,7 @@ private:
 
     void check_nonempty() const {
         if (certificate_.gap_sign == 0) {
-            check_ray();
+            check_kind(check_ray());
             expect_no_energies("a closed gap");
             return;
         }
@@ -147,18 +184,17 @@ private:
         if (!certificate_.energy_least || *certificate_.energy_least != terms_.factor / length) {
             invalid("energy_least: expected " + to_string(terms_.factor / length));
         }
-        if (!certificate_.ray.empty()) {
-            check_ray();
-            if (certificate_.energy_bound) invalid("energy_bound: expected none along a ray");
-        }
+        check_kind(rho);
+        if (!certificate_.ray.empty()) invalid("ray: expected none where there is a gap");
         check_greatest(terms_.factor / length);
     }
 
-    void check_ray() const {
+    Dense check_ray() const {
         const Dense ray = terms_.dense(certificate_.ray, "ray");
         if (square(ray) == 0) invalid("ray: expected a nonzero direction");
         check_cone(ray, "ray");
         if (contact_value(ray) != 0) invalid("ray: COND2 fails");
+        return ray;
     }
 
     void check_greatest(const Rational& least) const {

@@ -13,83 +13,6 @@ using Sign = CertificateTerms::Sign;
 // Beyond this a chain is refused, so that a forged one cannot exhaust the machine.
 constexpr std::size_t chain_values = 400;
 
-// Bounds of every column that can differ from zero.
-void read_box(const CertificateTerms& terms, const GreatestProof& proof, Dense& lower, Dense& upper) {
-    std::vector<int> seen(terms.dimension, 0);
-    for (const auto& bound : proof.box) {
-        const Rational value = terms.verified(bound);
-        if (bound.form.size() != 1) invalid("box: expected forms of one column");
-        const auto c = static_cast<std::size_t>(bound.form[0].first);
-        const Rational& coefficient = bound.form[0].second;
-        if (coefficient == 1) {
-            upper[c] = value;
-            seen[c] |= 1;
-        } else if (coefficient == -1) {
-            lower[c] = -value;
-            seen[c] |= 2;
-        } else {
-            invalid("box: expected a coefficient 1 or -1");
-        }
-    }
-    for (std::size_t c = 0; c < terms.dimension; ++c) {
-        if (terms.signs[c] != Sign::zero && seen[c] != 3) invalid("box: no bounds of " + column_name(static_cast<int>(c)));
-    }
-}
-
-// beta^2 <= (l + u) beta - l u in the box; the form that remains is bounded by the box.
-Rational leaf_bound(const CertificateTerms& terms, const RowCombination& leaf, const Dense& lower, const Dense& upper) {
-    Dense secant(terms.dimension);
-    Rational value = leaf.contact * terms.certificate.gap_sign;
-    for (std::size_t c = 0; c < terms.dimension; ++c) {
-        secant[c] = lower[c] + upper[c];
-        value -= lower[c] * upper[c];
-    }
-    const Dense rest = terms.remainder(secant, leaf);
-    for (std::size_t c = 0; c < terms.dimension; ++c) {
-        if (terms.signs[c] != Sign::zero) value += std::max<Rational>(rest[c] * lower[c], rest[c] * upper[c]);
-    }
-    return value;
-}
-
-Rational tree_bound(const CertificateTerms& terms, const GreatestProof& proof) {
-    Dense lower(terms.dimension);
-    Dense upper(terms.dimension);
-    read_box(terms, proof, lower, upper);
-    struct Open {
-        int node;
-        Dense lower;
-        Dense upper;
-    };
-    std::vector<Open> open{{0, lower, upper}};
-    std::optional<Rational> greatest;
-    std::size_t visited = 0;
-    while (!open.empty()) {
-        Open here = std::move(open.back());
-        open.pop_back();
-        const auto& node = proof.tree[static_cast<std::size_t>(here.node)];
-        if (node.split_column < 0) {
-            const Rational value = leaf_bound(terms, node.leaf, here.lower, here.upper);
-            if (!greatest || value > *greatest) greatest = value;
-            continue;
-        }
-        if (node.split_column >= static_cast<int>(terms.dimension)) invalid("tree: unknown " + column_name(node.split_column));
-        const auto c = static_cast<std::size_t>(node.split_column);
-        const auto count = static_cast<int>(proof.tree.size());
-        for (const int child : {node.low, node.high}) {
-            // Children come after their parent, so the walk ends.
-            if (child <= here.node || child >= count) invalid("tree: expected children after node " + std::to_string(here.node));
-        }
-        Open high{node.high, here.lower, here.upper};
-        high.lower[c] = std::max(high.lower[c], node.split_at);
-        here.node = node.low;
-        here.upper[c] = std::min(here.upper[c], node.split_at);
-        if (here.lower[c] <= here.upper[c]) open.push_back(std::move(here));
-        if (high.lower[c] <= high.upper[c]) open.push_back(std::move(high));
-        if (++visited > 4 * proof.tree.size()) invalid("tree: a node is visited too often");
-    }
-    return greatest.value_or(Rational(0));
-}
-
 // A convex sum of squared steps over bounds and known directions of steps is greatest at a
 // vertex, and there every partial sum equals one of the bounds.
 Rational best_chain(const CertificateTerms& terms, const std::vector<int>& chain, const std::vector<Rational>& lower,
@@ -160,9 +83,6 @@ Rational chain_bound(const CertificateTerms& terms, const GreatestProof& proof) 
 
 }  // namespace
 
-Rational proved_square(const CertificateTerms& terms) {
-    const auto& proof = terms.certificate.greatest_proof;
-    return proof.tree.empty() ? chain_bound(terms, proof) : tree_bound(terms, proof);
-}
+Rational proved_square(const CertificateTerms& terms) { return chain_bound(terms, terms.certificate.greatest_proof); }
 
 }  // namespace nsma

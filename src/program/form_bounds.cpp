@@ -1,34 +1,9 @@
 #include "form_bounds.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace nsma {
-namespace {
-
-// Simplex values below this are nonbasic; data are small integers and CLP works to 1e-9.
-constexpr double basis_tolerance = 1e-7;
-
-// The dual as a program over (y >= 0, nu free): rows' y + contact nu >= form on bounded columns,
-// = form on free ones; minimise nu delta.
-LinearProgram dual_program(const Reduction& reduction) {
-    const auto n = static_cast<Eigen::Index>(reduction.variables());
-    const auto count = reduction.rows.rows();
-    LinearProgram program;
-    program.rows.resize(n, count + 1);
-    program.rows.leftCols(count) = reduction.rows.cast<double>().transpose();
-    program.rows.col(count) = reduction.contact_row.cast<double>();
-    program.row_lower = Eigen::VectorXd::Zero(n);
-    program.row_upper = Eigen::VectorXd::Constant(n, no_bound);
-    program.lower = Eigen::VectorXd::Zero(count + 1);
-    program.lower[count] = -no_bound;
-    program.upper = Eigen::VectorXd::Constant(count + 1, no_bound);
-    return program;
-}
-
-}  // namespace
-
 RationalVector sparse(const std::vector<Rational>& dense) {
     RationalVector result;
     for (std::size_t i = 0; i < dense.size(); ++i) {
@@ -49,7 +24,6 @@ std::vector<int> partial_sum_row(const Kernel& kernel, int step) {
 FormBounds::FormBounds(const Kernel& kernel, const Reduction& reduction, AdmissibleSet::Shape shape)
     : kernel_(kernel), reduction_(reduction), shape_(shape) {
     if (shape_ == AdmissibleSet::Shape::chain) chain_ = chain_rows(reduction);
-    if (shape_ == AdmissibleSet::Shape::general) dual_.emplace(dual_program(reduction));
     const Eigen::VectorXi row = contact_row(kernel);
     contact_.assign(row.data(), row.data() + row.size());
     const Conditions terms = conditions(kernel, reduction.gap_sign);
@@ -120,73 +94,11 @@ RowCombination FormBounds::chain_bound(const std::vector<Rational>& form) const 
     return result;
 }
 
-std::optional<FormBound> FormBounds::bound(const std::vector<Rational>& form) {
-    std::optional<RowCombination> proof;
-    switch (shape_) {
-        case AdmissibleSet::Shape::simplex: proof = simplex_bound(form); break;
-        case AdmissibleSet::Shape::chain: proof = chain_bound(form); break;
-        case AdmissibleSet::Shape::general: proof = program_bound(form); break;
-    }
-    if (!proof) return std::nullopt;
+FormBound FormBounds::bound(const std::vector<Rational>& form) const {
+    RowCombination proof = shape_ == AdmissibleSet::Shape::chain ? chain_bound(form) : simplex_bound(form);
     const auto full = unreduced(form);
-    cover_forced(full, *proof);
-    return FormBound{sparse(full), std::move(*proof)};
-}
-
-std::optional<RowCombination> FormBounds::program_bound(const std::vector<Rational>& form) {
-    const auto n = static_cast<Eigen::Index>(reduction_.variables());
-    const auto count = reduction_.rows.rows();
-    double scale = 0;
-    for (Eigen::Index j = 0; j < n; ++j) {
-        const double value = to_double(form[static_cast<std::size_t>(j)]);
-        scale = std::max(scale, std::abs(value));
-    }
-    if (scale == 0) scale = 1;
-    for (Eigen::Index j = 0; j < n; ++j) {
-        const double value = to_double(form[static_cast<std::size_t>(j)]) / scale;
-        const bool bounded = reduction_.bounded[static_cast<std::size_t>(j)] != 0;
-        dual_->set_row_bounds(j, value, bounded ? no_bound : value);
-    }
-    Eigen::VectorXd cost = Eigen::VectorXd::Zero(count + 1);
-    cost[count] = reduction_.gap_sign;
-    const LinearSolution solution = dual_->minimise(cost);
-    if (solution.status != LinearStatus::optimal) return std::nullopt;
-
-    // The same vertex in fractions: unknowns are the basic multipliers, equations the tight columns.
-    std::vector<Eigen::Index> support;
-    for (Eigen::Index i = 0; i < count; ++i) {
-        if (solution.x[i] > basis_tolerance) support.push_back(i);
-    }
-    const bool contact = std::abs(solution.x[count]) > basis_tolerance;
-    if (contact) support.push_back(count);
-    Integer common = 1;
-    for (const auto& value : form) common = lcm(common, denominator(value));
-    std::vector<std::vector<Integer>> a;
-    std::vector<Integer> b;
-    for (Eigen::Index j = 0; j < n; ++j) {
-        double covered = 0;
-        for (const auto i : support) {
-            covered += solution.x[i] * (i == count ? reduction_.contact_row[j] : reduction_.rows(i, j));
-        }
-        const auto& wanted = form[static_cast<std::size_t>(j)];
-        if (std::abs(covered - to_double(wanted) / scale) > basis_tolerance) continue;
-        std::vector<Integer> row;
-        for (const auto i : support) row.emplace_back(i == count ? reduction_.contact_row[j] : reduction_.rows(i, j));
-        a.push_back(std::move(row));
-        b.push_back(numerator(wanted) * (common / denominator(wanted)));
-    }
-    const auto solved = solve_exactly(std::move(a), std::move(b));
-    if (!solved || solved->size() != support.size()) return std::nullopt;
-    RowCombination result;
-    for (std::size_t k = 0; k < support.size(); ++k) {
-        Rational value = (*solved)[k] / common;
-        if (support[k] == count) {
-            result.contact = std::move(value);
-        } else if (value != 0) {
-            result.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(support[k])], std::move(value));
-        }
-    }
-    return result;
+    cover_forced(full, proof);
+    return {sparse(full), std::move(proof)};
 }
 
 }  // namespace nsma

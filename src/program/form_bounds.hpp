@@ -1,12 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "nsma/program/admissible_set.hpp"
 #include "nsma/program/certificate.hpp"
-#include "nsma/program/linear_program.hpp"
-
 #include "known_set.hpp"
 
 namespace nsma {
@@ -15,12 +12,11 @@ namespace nsma {
 /// unreduced conditions.
 class FormBounds {
 public:
-    /// Of a known shape the bounds are known as well, else CLP finds them.
+    /// The shape, simplex or chain, says how.
     FormBounds(const Kernel& kernel, const Reduction& reduction, AdmissibleSet::Shape shape);
 
-    /// The least upper bound of form . gamma (integers, size n) with exact multipliers, or
-    /// absent where the linear program or its exact repetition fails.
-    [[nodiscard]] std::optional<FormBound> bound(const std::vector<Rational>& form);
+    /// The least upper bound of form . gamma (integers, size n) with exact multipliers.
+    [[nodiscard]] FormBound bound(const std::vector<Rational>& form) const;
 
     /// Adds multiples of the rows that forced columns to zero until the combination dominates
     /// `form` (over all columns of beta) on those columns too.
@@ -32,15 +28,13 @@ public:
 private:
     [[nodiscard]] RowCombination simplex_bound(const std::vector<Rational>& form) const;
     [[nodiscard]] RowCombination chain_bound(const std::vector<Rational>& form) const;
-    [[nodiscard]] std::optional<RowCombination> program_bound(const std::vector<Rational>& form);
 
     const Kernel& kernel_;
     const Reduction& reduction_;
     std::vector<int> contact_;        // w over all columns of beta
     std::vector<int> forced_flip_;    // flip of each forced zero, in order
     AdmissibleSet::Shape shape_;
-    ChainRows chain_;                   // of a chain
-    std::optional<LinearSolver> dual_;  // of a general set
+    ChainRows chain_;  // of a chain
 };
 
 [[nodiscard]] RationalVector sparse(const std::vector<Rational>& dense);

@@ -79,26 +79,25 @@ ChainRows chain_rows(const Reduction& reduction) {
 
 Shape shape_of(const Reduction& reduction) {
     const auto n = static_cast<Eigen::Index>(reduction.variables());
-    if (n == 0) return Shape::general;
+    if (n == 0) return Shape::none;
     const int weight = reduction.contact_row[0];
-    if ((reduction.contact_row.array() != weight).any()) return Shape::general;
+    if ((reduction.contact_row.array() != weight).any()) return Shape::none;
     const auto bounded = std::count(reduction.bounded.begin(), reduction.bounded.end(), std::uint8_t{1});
     if (bounded == n && reduction.rows.rows() == 0) return Shape::simplex;
-    if (bounded > 0 || weight >= 0) return Shape::general;
+    if (bounded > 0 || weight >= 0) return Shape::none;
     const ChainRows rows = chain_rows(reduction);
-    if (rows.prefix.empty()) return Shape::general;
+    if (rows.prefix.empty()) return Shape::none;
     for (std::size_t k = 1; k < static_cast<std::size_t>(n); ++k) {
-        if (rows.prefix[k] < 0 || rows.suffix[k] < 0) return Shape::general;
+        if (rows.prefix[k] < 0 || rows.suffix[k] < 0) return Shape::none;
     }
     return Shape::chain;
 }
 
-void decide_in_closed_form(AdmissibleSet& set, const AdmissibleOptions& options) {
+void decide_in_closed_form(AdmissibleSet& set) {
     const Reduction& data = set.reduction;
     const auto n = static_cast<Eigen::Index>(data.variables());
     const int weight = data.contact_row[0];
     if (set.shape == Shape::chain && data.gap_sign <= 0) {
-        if (const int whole = chain_rows(data).prefix.back(); data.gap_sign < 0 && whole >= 0) set.projection_rows = {whole};
         return refuse(set, data.gap_sign < 0 ? "partial sums: the tip cannot be beyond where it starts"
                                              : "partial sums: only rest meets COND1-3 at a closed gap");
     }
@@ -106,15 +105,11 @@ void decide_in_closed_form(AdmissibleSet& set, const AdmissibleOptions& options)
     set.status = AdmissibleSet::Status::nonempty;
     if (data.gap_sign == 0) {
         set.ray = Eigen::VectorXd::Constant(n, 1.0).normalized();
-        set.vertices = {set.ray};
-        if (!options.greatest) return;
-        set.vertices.clear();
         for (Eigen::Index j = 0; j < n; ++j) set.vertices.push_back(Eigen::VectorXd::Unit(n, j));
         return;
     }
     const double share = static_cast<double>(data.gap_sign) / weight;
     set.least = Eigen::VectorXd::Constant(n, share / static_cast<double>(n));
-    if (!options.greatest) return;
     if (set.shape == Shape::simplex) {
         for (Eigen::Index j = 0; j < n; ++j) set.vertices.push_back(share * Eigen::VectorXd::Unit(n, j));
     } else {

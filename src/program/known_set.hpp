@@ -10,7 +10,7 @@ namespace nsma {
 ///   simplex  every gamma_j bounded, no row kept, contact_row = c (1, .., 1);
 ///   chain    every gamma_j free, contact_row = -c (1, .., 1), and the rows are the partial sums from either end:
 ///            with P_k = gamma_1 + .. + gamma_k, P_k <= 0 and P_n - P_k <= 0;
-///   general  anything else.
+///   none     anything else.
 [[nodiscard]] AdmissibleSet::Shape shape_of(const Reduction& reduction);
 
 /// Index among the kept rows of each partial sum: of P_k at prefix[k], of P_n - P_k at suffix[k], -1 where there is none;
@@ -21,9 +21,9 @@ struct ChainRows {
 };
 [[nodiscard]] ChainRows chain_rows(const Reduction& reduction);
 
-/// Decides a set that is not `general` in closed form. A simplex has the vertices delta e_j/c. A chain has those with
+/// Decides a set of a known shape. A simplex has the vertices delta e_j/c. A chain has those with
 /// every P_k either 0 or -delta/c, 2^(n-1) of them: kept are all of the greatest energy (steps of alternating sign, one of
 /// them zero where n is even), the single steps, and those whose P_k changes after every 2, 3 or 4 columns.
-void decide_in_closed_form(AdmissibleSet& set, const AdmissibleOptions& options);
+void decide_in_closed_form(AdmissibleSet& set);
 
 }  // namespace nsma

@@ -31,20 +31,18 @@ LevelPoints::LevelPoints(const AdmissibleSet& set, double level) : set_(set), le
     for (const auto& vertex : set.vertices) centre_ += vertex;
     // A closed gap has a cone: any positive multiple is as good.
     centre_ /= static_cast<double>(set.vertices.size() + 1);
-    if (set.unbounded() && set.reduction.gap_sign != 0) centre_ += centre_.norm() * set.ray;
 }
 
 std::optional<Eigen::VectorXd> LevelPoints::reach(const Eigen::VectorXd& gamma) const {
     const double square = level_ / set_.reduction.energy_factor;
     const double here = gamma.squaredNorm();
-    if (set_.reduction.gap_sign == 0 && here > 0) return gamma * std::sqrt(square / here);
+    if (set_.reduction.gap_sign == 0) return std::sqrt(square) * (here > 0 ? Eigen::VectorXd(gamma.normalized()) : set_.ray);
     if (here > square) {
         // Backward from the base, which lies below the level.
         const Eigen::VectorXd direction = gamma - base_;
         if (base_.squaredNorm() > square) return std::nullopt;
         return base_ + std::min(crossing(base_, direction, square), 1.0) * direction;
     }
-    if (set_.unbounded()) return gamma + crossing(gamma, set_.ray, square) * set_.ray;
     const Eigen::VectorXd& top = set_.vertices.front();
     if (top.squaredNorm() < square) return std::nullopt;
     const Eigen::VectorXd direction = top - gamma;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "search.hpp"
+#include "simplex_optimum.hpp"
 
 namespace nsma {
 namespace {
@@ -72,6 +73,7 @@ public:
         answer_.gap_sign = bar_.gap_sign();
         answer_.kernel_dimension = problem_.kernel.dimension();
         answer_.verdict = problem_.verdict;
+        answer_.kind = problem_.kind;
         answer_.reason = problem_.set.reason;
         answer_.interval = problem_.interval;
         answer_.verdict_proved = problem_.proof.verdict_proved;
@@ -111,8 +113,10 @@ private:
 
     void find() {
         if (request_.objective == Objective::nearest && !set_reference()) return;
-        if (closed_form()) return;
-        optimise();
+        if (end_of_interval()) return;
+        const std::optional<Candidate> known = best_known();
+        if (known && options_.solvers == SolverChoice::proof) return take_known({*known});
+        optimise(known);
     }
 
     bool set_reference() {
@@ -134,63 +138,77 @@ private:
         return true;
     }
 
-    // Orbits known without a solver: ends of the interval, points and segments.
-    bool closed_form() {
+    // The orbits at the ends of the energy interval, where no level is asked or it is one of them.
+    bool end_of_interval() {
         const auto& set = problem_.set;
-        const bool all_known = set.shape != AdmissibleSet::Shape::general;  // every vertex of the greatest energy
-        std::vector<Candidate> candidates;
-        const auto add = [&](const Eigen::VectorXd& gamma, const char* method) {
-            candidates.push_back({gamma, method});
+        const bool closed = reduction_.gap_sign == 0;
+        const auto same = [&](std::optional<double> end) {
+            return end && std::abs(*request_.level - *end) <= end_tolerance * *end;
         };
-        if (!request_.level) {
-            if (!is_extreme(request_.objective)) {
-                add(set.least, "least-norm");
-            } else if (reduction_.gap_sign == 0) {
-                refuse_closed_gap_extreme();
-                return true;
-            } else if (request_.objective == Objective::max_energy && set.unbounded()) {
-                answer_.verdict = Verdict::failed;
-                answer_.reason = "the energy of this pattern is unbounded";
-                return true;
-            } else if (set.flat_dimension == 0) {
-                add(set.least, "closed-form");
-            } else if (all_known) {
-                const bool least = request_.objective == Objective::min_energy;
-                add(least ? set.least : set.vertices.front(), least ? "least-norm" : "vertex");
+        if (!request_.level && closed) {
+            refuse_closed_gap_extreme();
+        } else if (request_.objective == Objective::max_energy) {
+            take_known({{set.vertices.front(), "vertex"}});
+        } else if (!request_.level || (!closed && same(answer_.interval.least))) {
+            take_known({{set.least, "least-norm"}});
+        } else if (same(answer_.interval.greatest)) {
+            std::vector<Candidate> tied;
+            for (const auto& vertex : set.vertices) {
+                if (set.energy(vertex) >= *answer_.interval.greatest * (1 - tie_tolerance)) tied.push_back({vertex, "vertex"});
             }
+            take_known(tied);
         } else {
-            const double level = *request_.level;
-            const auto same = [&](double end) {
-                return std::abs(level - end) <= end_tolerance * end;
-            };
-            if (reduction_.gap_sign != 0 && same(*answer_.interval.least)) {
-                add(set.least, "least-norm");
-            } else if (answer_.interval.greatest && same(*answer_.interval.greatest)) {
-                for (const auto& vertex : set.vertices) {
-                    if (set.energy(vertex) >= *answer_.interval.greatest * (1 - tie_tolerance)) {
-                        add(vertex, "vertex");
-                    }
-                }
-            } else if (reduction_.gap_sign == 0 ? reduction_.variables() == 1 || set.flat_dimension == 1
-                                                : set.flat_dimension == 1) {
-                for (const auto& point : line_points(reduction_, level)) add(point, "closed-form");
-            }
+            return false;
         }
-        const Candidate* best = nullptr;
-        double value = std::numeric_limits<double>::infinity();
-        for (const auto& candidate : candidates) {
-            const double objective = goal_.value(candidate.gamma);
-            if (objective < value) {
-                value = objective;
-                best = &candidate;
+        return true;
+    }
+
+    // The best orbit at a level inside the interval, where a closed form gives it.
+    [[nodiscard]] std::optional<Candidate> best_known() const {
+        const double level = *request_.level;
+        if (problem_.set.shape == AdmissibleSet::Shape::simplex) return Candidate{simplex_point(level), "closed-form"};
+        if (problem_.set.flat_dimension == 1) {
+            std::optional<Candidate> best;
+            for (const auto& point : line_points(reduction_, level)) {
+                if (!best || goal_.value(point) < goal_.value(best->gamma)) best = {point, "closed-form"};
             }
+            return best;
         }
-        if (best == nullptr) return false;
+        // No variable of a chain has a contact step: its orbits are all without force.
+        if (request_.objective != Objective::least_force) return std::nullopt;
+        const auto point = LevelPoints(problem_.set, level).start(0);
+        return point ? std::optional(Candidate{*point, "closed-form"}) : std::nullopt;
+    }
+
+    [[nodiscard]] Eigen::VectorXd simplex_point(double energy) const {
+        const bool closed = reduction_.gap_sign == 0;
+        const SimplexLevel level{reduction_.variables(), closed ? 0.0 : problem_.set.least.sum(), energy / reduction_.energy_factor};
+        switch (request_.objective) {
+            case Objective::least_force: return least_peak_point(level);
+            case Objective::nearest: return nearest_point(level, target_of(goal_.reference));
+            default: return smoothest_point(level, shock_closure(problem_.kernel, reduction_));
+        }
+    }
+
+    // The linear form of the reduced variables that is the scalar product with a window of waves.
+    [[nodiscard]] Eigen::VectorXd target_of(const Eigen::VectorXd& window) const {
+        const Kernel& kernel = problem_.kernel;
+        Eigen::VectorXd amplitudes = Eigen::VectorXd::Zero(kernel.dimension());
+        for (int n = 0; n < window.size(); ++n) {
+            const int step = n % kernel.pattern.period_steps();
+            if (const int column = kernel.column(step); column >= 0) amplitudes[column] += kernel.sign[static_cast<std::size_t>(step)] * window[n];
+        }
+        return reduction_.gamma(amplitudes);
+    }
+
+    // The best of orbits in closed form, which are all that can be the best.
+    void take_known(const std::vector<Candidate>& candidates) {
+        const auto best = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
+            return goal_.value(a.gamma) < goal_.value(b.gamma);
+        });
         answer_.agreement = Agreement::not_needed;
         accept(*best);
-        // A point, the whole line or every vertex was looked at; of a general set only the vertices found.
-        if (best->method != "vertex" || all_known) answer_.optimality = Optimality{value, 0.0, true, 0.0, 0};
-        return true;
+        answer_.optimality = Optimality{goal_.value(best->gamma), 0.0, true, 0.0};
     }
 
     void refuse_closed_gap_extreme() {
@@ -198,8 +216,8 @@ private:
         answer_.reason = "a closed gap has orbits at every energy: no least and no greatest";
     }
 
-    void optimise() {
-        Search search(options_, ipopt_, problem_, request_, goal_, answer_.interval.least.value_or(1.0));
+    void optimise(const std::optional<Candidate>& known) {
+        Search search(options_, ipopt_, problem_, request_, goal_, answer_.interval.least.value_or(1.0), known);
         if (options_.solvers == SolverChoice::proof) {
             if (const auto proved = search.first_proof()) {
                 answer_.agreement = Agreement::not_needed;
@@ -211,9 +229,7 @@ private:
         answer_.agreement = search.agreement();
         answer_.objective_difference = search.difference();
         answer_.solvers = search.runs();
-        const auto ranked = search.ranked();
-        if (request_.objective == Objective::max_energy && take_vertex(ranked)) return;
-        for (const Best* best : ranked) {
+        for (const Best* best : search.ranked()) {
             if (!take(*best)) continue;
             if (search.unsolved(best) && !search.a_solver_came_to(*best)) no_solver_came("the " + best->candidate.method);
             return;
@@ -239,31 +255,6 @@ private:
     void no_solver_came(const std::string& origin) {
         if (answer_.agreement != Agreement::both_failed) answer_.agreement = Agreement::different_optimum;
         answer_.reason = "no solver came to the best orbit known, found by " + origin;
-    }
-
-    // The greatest energy is known from the proof of the interval; a solver may stop at a vertex
-    // below it. Takes the greatest vertex known where no solver came to it, and judges the gap of
-    // either by the proved bound.
-    bool take_vertex(const std::vector<const Best*>& ranked) {
-        const auto& interval = answer_.interval;
-        if (!interval.greatest || !interval.bound) return false;
-        const auto& vertices = problem_.set.vertices;
-        Candidate candidate;
-        if (!vertices.empty()) candidate = {vertices.front(), "vertex"};
-        if (!ranked.empty() && (vertices.empty() || ranked.front()->rank <= goal_.rank(vertices.front()) * (1 - options_.agreement_tolerance))) {
-            candidate = ranked.front()->candidate;
-        }
-        if (candidate.method.empty()) return false;
-        accept(candidate);
-        if (candidate.method == "vertex" && !ranked.empty() &&
-            ranked.front()->rank > goal_.rank(candidate.gamma) + options_.agreement_tolerance * std::abs(goal_.rank(candidate.gamma))) {
-            no_solver_came("the vertex search");
-        }
-        Optimality optimality;
-        optimality.gap = std::max(0.0, *interval.bound / *answer_.energy - 1);
-        optimality.global = optimality.gap <= options_.agreement_tolerance;
-        answer_.optimality = optimality;
-        return answer_.verdict == Verdict::admissible;
     }
 
     void accept(const Candidate& candidate) {
@@ -306,17 +297,18 @@ PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const Patte
     validate(pattern);
     PatternProblem problem;
     problem.kernel = exact_kernel(pattern);
-    problem.set = admissible_set(reduce(conditions(problem.kernel, gap_sign)), options.admissible);
+    problem.set = admissible_set(reduce(conditions(problem.kernel, gap_sign)));
     if (problem.kernel.dimension() == 0) {
         problem.verdict = Verdict::trivial;
     } else if (problem.set.status == AdmissibleSet::Status::empty) {
         problem.verdict = Verdict::inadmissible;
     } else if (problem.set.status == AdmissibleSet::Status::nonempty) {
         problem.verdict = Verdict::admissible;
+        problem.kind = pattern_kind(pattern);
     }
     problem.interval = problem.set.interval();
     if (!options.prove) return problem;
-    problem.proof = prove(problem.kernel, problem.set, options.proof);
+    problem.proof = prove(problem.kernel, problem.set);
     const auto& certificate = problem.proof.certificate;
     auto& interval = problem.interval;
     if (problem.proof.verdict_proved && certificate.energy_least) {

@@ -3,36 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nsma/program/conic_bound.hpp"
-#include "nsma/program/lifted_program.hpp"
 #include "nsma/program/restore.hpp"
-#include "sphere_minimiser.hpp"
 
 namespace nsma {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Unknowns beyond which a relaxation takes long enough to be counted eightfold.
-constexpr int costly_relaxation = 10;
 // Unknowns beyond which SLSQP, whose steps cost their cube, is left to the augmented Lagrangian with L-BFGS, and a quarter
 // of the starts is made, each of which costs as much as all of a small program.
 constexpr Eigen::Index slsqp_limit = 64;
-// Unknowns beyond which a relaxation, a matrix of their square under hundreds of eigenvalue decompositions, costs more
-// than all the rest; the bound of the Lagrangian stands.
-constexpr int relaxation_limit = 48;
 constexpr double bound_rounding = 1e-9;  // relative; a thousandth of what `global` allows
-// Unknowns beyond which Ipopt comes to an optimum in less time than the descent from a segment, which takes a step for
-// each bound it meets.
-constexpr Eigen::Index segment_limit = 48;
-
 // Number of the start that OrbitRequest::start gives.
 constexpr int warm_start = -1;
 
 }  // namespace
 
-bool ipopt_is_usual(const OrbitSolverOptions& options, int kernel_dimension) {
-    return options.solvers == SolverChoice::ipopt || options.solvers == SolverChoice::both ||
-           (options.solvers == SolverChoice::proof && kernel_dimension > segment_limit);
+bool ipopt_is_usual(const OrbitSolverOptions& options) {
+    return options.solvers == SolverChoice::ipopt || options.solvers == SolverChoice::both;
 }
 
 double Goal::value(const Eigen::VectorXd& gamma) const {
@@ -44,27 +31,24 @@ double Goal::rank(const Eigen::VectorXd& gamma) const {
 }
 
 Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const PatternProblem& problem,
-               const OrbitRequest& request, const Goal& goal, double least_energy)
+               const OrbitRequest& request, const Goal& goal, double least_energy, const std::optional<Candidate>& known)
     : options_(options), ipopt_solver_(ipopt), problem_(problem), goal_(goal),
       program_(orbit_program(problem.set.reduction, problem.kernel, goal.objective, request.level, least_energy, goal.reference)),
       with_ipopt_(options.solvers != SolverChoice::nlopt), with_nlopt_(options.solvers != SolverChoice::ipopt), starts_(options.starts) {
     if (request.level) level_.emplace(problem.set, *request.level);
     if (level_ && request.start.size() > 0) warm_ = level_->reach(problem.set.reduction.gamma(request.start));
     if (program_.program.variables() > slsqp_limit) starts_ = (starts_ + 3) / 4;
+    if (!known) return;
+    unaided_.usable = true;
+    unaided_.candidate = *known;
+    unaided_.rank = goal.rank(known->gamma);
+    unaided_.optimality = {goal.value(known->gamma), 0.0, true, 0.0};
 }
 
 std::optional<Best> Search::first_proof() {
-    if (const auto x = sphere_minimiser(program_.program)) {
-        unaided_ = found(polish(program_.program, *x), "sphere");
-        if (unaided_.optimality.global) return unaided_;
-    }
-    if (program_.program.variables() > segment_limit) {
-        const auto begin = start(ipopt_start());
-        if (begin && attempt(*begin, "ipopt", ipopt_start(), ipopt_) && ipopt_.optimality.global) return ipopt_;
-    }
     if (auto point = segment(); point && point->usable) {
         if (point->optimality.global) return point;
-        if (!unaided_.usable || preferable(*point, unaided_)) unaided_ = std::move(*point);
+        unaided_ = std::move(*point);
     }
     search_with_nlopt();
     settle();
@@ -128,72 +112,37 @@ void Search::search_with_ipopt() {
 
 // Does the solver, started off to the side of an optimum better than its own, come to it?
 void Search::ask(const Best& better, Best& worse, const char* solver) {
-    for (const double part : {0.1, 0.03, 0.01}) {
+    for (const double part : {0.1, 0.03, 0.01, 0.0}) {  // at last from the optimum itself
         if (!better.usable || not_worse(worse, better)) return;
         const int number = next_++;
         if (const auto aside = aside_of(better.candidate.gamma, part, number)) attempt(*aside, solver, number, worse);
     }
 }
 
-// Where the Lagrangian leaves a gap: bounds the objective by relaxations, whose solutions are starts that find better
-// optima. Solvers used so far are asked about a best orbit that is not theirs. The bound is found once and holds for
-// whatever comes later.
+// Solvers used so far are asked about a best orbit that is not theirs; then every orbit is judged by the best bound.
 void Search::settle() {
     if (ranked().empty()) return;
-    if (!bounded_ && !ranked().front()->optimality.global) relax(*ranked().front());
     const Best* const best = ranked().front();
     if (unsolved(best)) {
         if (!ipopt_.run.name.empty()) ask(*best, ipopt_, "ipopt");
         if (!nlopt_.run.name.empty()) ask(*best, nlopt_, "nlopt");
     }
-    double value = product_bound_.value_or(-infinity);
-    if (bounded_) value = std::max(value, bounded_->value);
-    for (const Best* one : ranked()) {  // the Lagrangian's bounds are of the program, not of the point
+    double value = -infinity;
+    for (const Best* one : ranked()) {  // bounds are of the program, not of the point
         if (one->optimality.lower_bound && program_.objective_unit > 0) {
             value = std::max(value, *one->optimality.lower_bound / program_.objective_unit);
         }
     }
-    for (Best* one : {&ipopt_, &nlopt_, &relaxed_, &unaided_}) {
-        if (!one->usable) continue;
-        if (bounded_) one->optimality.nodes = bounded_->nodes;
-        if (value > -infinity) {
-            set_bound(program_.program.objective(program_.point(one->candidate.gamma)), value, one->optimality);
-        }
+    if (value == -infinity) return;
+    for (Best* one : {&ipopt_, &nlopt_, &unaided_}) {
+        if (one->usable) set_bound(program_.program.objective(program_.point(one->candidate.gamma)), value, one->optimality);
     }
-}
-
-void Search::relax(const Best& best) {
-    const int unknowns = problem_.set.reduction.variables();
-    if (options_.bound_nodes < 1 || unknowns > relaxation_limit || !level_) return;
-    std::optional<Polished> better;
-    double objective = program_.program.objective(program_.point(best.candidate.gamma));
-    ConicBoundOptions bounding;
-    const bool costly = unknowns > costly_relaxation;
-    bounding.node_limit = costly ? (options_.bound_nodes + 7) / 8 : options_.bound_nodes;
-    if (costly) bounding.max_iterations = 2'000;
-    bounding.improve = [&](const Eigen::VectorXd& x) {
-        if (const auto near = restored(program_, problem_.set, &*level_, x)) {
-            const Polished polished = polish(program_.program, program_.point(*near));
-            if (polished.feasible && polished.objective < objective * (1 - options_.agreement_tolerance)) {
-                objective = polished.objective;
-                better = polished;
-            }
-        }
-        return objective;
-    };
-    bounded_ = conic_bound(program_.program, objective, bounding);
-    if (better) relaxed_ = found(*better, "relaxation");
 }
 
 SolverOutcome Search::call(const std::string& solver, const Eigen::VectorXd& x) {
     if (solver == "nlopt-slsqp") return solve_with_nlopt(NloptMethod::slsqp, program_.program, x, options_.solver);
     if (solver == "nlopt-auglag") return solve_with_nlopt(NloptMethod::auglag_lbfgs, program_.program, x, options_.solver);
-    // Ipopt on the form of the program that its size prefers.
-    if (!prefers_lifted(program_, problem_.kernel)) return ipopt_solver_.solve(program_.program, x);
-    const LiftedProgram lifted = lifted_program(program_, problem_.set.reduction, problem_.kernel);
-    SolverOutcome outcome = ipopt_solver_.solve(lifted.program, lifted.point(x));
-    outcome.x.conservativeResize(x.size());
-    return outcome;
+    return ipopt_solver_.solve(program_.program, x);
 }
 
 // One start of one solver, restored, polished and ranked; false when it is not usable. "nlopt" stands for SLSQP, then the
@@ -228,8 +177,8 @@ bool Search::attempt(const Eigen::VectorXd& start, const std::string& solver, in
     return run.usable;
 }
 
-// A polished point with the bound that its Lagrangian or products of unknowns give.
-Best Search::found(const Polished& polished, const char* method) {
+// A polished point with the bound that its Lagrangian gives.
+Best Search::found(const Polished& polished, const char* method) const {
     Best result;
     if (!polished.feasible) return result;
     result.usable = true;
@@ -238,12 +187,6 @@ Best Search::found(const Polished& polished, const char* method) {
     result.optimality.kkt_residual = polished.multipliers.residual;
     if (polished.stationary && std::isfinite(polished.lower_bound)) {
         set_bound(polished.objective, polished.lower_bound, result.optimality);
-    }
-    if (result.optimality.global) return result;
-    // No point changes this bound: it is computed once.
-    if (!product_bound_) product_bound_ = product_bound(program_.program);
-    if (*product_bound_ > -infinity && (!result.optimality.lower_bound || *product_bound_ > polished.lower_bound)) {
-        set_bound(polished.objective, *product_bound_, result.optimality);
     }
     return result;
 }
@@ -313,7 +256,7 @@ std::vector<SolverRun> Search::runs() const {
 
 std::vector<const Best*> Search::ranked() const {
     std::vector<const Best*> all;
-    for (const Best* best : {&ipopt_, &nlopt_, &relaxed_, &unaided_}) {
+    for (const Best* best : {&ipopt_, &nlopt_, &unaided_}) {
         if (best->usable) all.push_back(best);
     }
     std::stable_sort(all.begin(), all.end(), [this](const Best* a, const Best* b) { return preferable(*a, *b); });

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "nsma/program/conic_bound.hpp"
 #include "nsma/program/level_points.hpp"
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/orbit_solver.hpp"
@@ -30,7 +29,7 @@ struct Goal {
     [[nodiscard]] double rank(const Eigen::VectorXd& gamma) const;
 };
 
-/// The best that one solver, or a relaxation, came to.
+/// The best that one solver, or a closed form, came to.
 struct Best {
     double rank = std::numeric_limits<double>::infinity();
     Candidate candidate;
@@ -39,12 +38,12 @@ struct Best {
     Optimality optimality;
 };
 
-/// The search for the best orbit at one level: each solver from its own starts, then the other one's optimum, then what
-/// relaxations find and bound.
+/// The search for the best orbit at one level: each solver from its own starts, then from near the best orbit known.
 class Search {
 public:
+    /// `known`: the best orbit in closed form, where there is one; solvers are asked whether they agree.
     Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const PatternProblem& problem, const OrbitRequest& request,
-           const Goal& goal, double least_energy);
+           const Goal& goal, double least_energy, const std::optional<Candidate>& known);
 
     /// The search of SolverChoice::proof until an answer is proved to be the best; absent where none is.
     [[nodiscard]] std::optional<Best> first_proof();
@@ -58,7 +57,7 @@ public:
     /// A solver asked for came to the objective of `best`.
     [[nodiscard]] bool a_solver_came_to(const Best& best) const;
     /// Not the answer of a solver.
-    [[nodiscard]] bool unsolved(const Best* best) const { return best == &relaxed_ || best == &unaided_; }
+    [[nodiscard]] bool unsolved(const Best* best) const { return best == &unaided_; }
     /// The segment point, polished: admissible without a solver.
     [[nodiscard]] std::optional<Best> segment();
 
@@ -70,10 +69,9 @@ private:
     void search_with_ipopt();
     void ask(const Best& better, Best& worse, const char* solver);
     void settle();
-    void relax(const Best& best);
     bool attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best);
     [[nodiscard]] SolverOutcome call(const std::string& solver, const Eigen::VectorXd& x);
-    [[nodiscard]] Best found(const Polished& polished, const char* method);
+    [[nodiscard]] Best found(const Polished& polished, const char* method) const;
     void set_bound(double objective, double bound, Optimality& result) const;
     [[nodiscard]] double difference(const Best& a, const Best& b) const;
     [[nodiscard]] bool preferable(const Best& a, const Best& b) const;
@@ -92,11 +90,8 @@ private:
     int next_ = 1;  // number of the next start
     Best ipopt_;
     Best nlopt_;
-    Best relaxed_;  // a better orbit that bounding came upon
-    Best unaided_;  // the best one found before a solver was asked
-    std::optional<ConicBound> bounded_;
+    Best unaided_;  // the best one without a solver
     std::vector<SolverRun> others_;
-    std::optional<double> product_bound_;  // in the scale of the program
 };
 
 }  // namespace nsma

@@ -15,7 +15,7 @@ namespace {
 
 // Fields keep their order, so that equal certificates are equal bytes.
 using Json = nlohmann::ordered_json;
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 constexpr std::array<std::pair<Certificate::Claim, const char*>, 3> claims{{
     {Certificate::Claim::trivial, "trivial"},
     {Certificate::Claim::empty, "empty"},
@@ -38,19 +38,6 @@ Json bounds_json(const std::vector<FormBound>& bounds) {
         Json entry{{"form", vector_json(bound.form)}};
         entry.update(combination_json(bound.proof));
         list.push_back(std::move(entry));
-    }
-    return list;
-}
-
-Json tree_json(const std::vector<BoundNode>& tree) {
-    Json list = Json::array();
-    for (const auto& node : tree) {
-        if (node.split_column < 0) {
-            list.push_back(combination_json(node.leaf));
-        } else {
-            list.push_back({{"split", node.split_column}, {"at", to_string(node.split_at)},
-                            {"low", node.low}, {"high", node.high}});
-        }
     }
     return list;
 }
@@ -125,20 +112,6 @@ public:
         }
         return result;
     }
-    [[nodiscard]] BoundNode node() {
-        BoundNode result;
-        if (const Json* split = optional("split")) {
-            result.split_column = integer(*split, "split");
-            if (result.split_column < 0) fail("a column >= 0", *split, "split");
-            result.split_at = fraction(required("at"), "at");
-            result.low = integer("low");
-            result.high = integer("high");
-        } else {
-            result.leaf = combination();
-        }
-        return result;
-    }
-
     void finish() const {
         for (const auto& [key, value] : json_.items()) {
             if (!known_.contains(key)) fail("no such field", value, key.c_str());
@@ -162,6 +135,7 @@ std::string certificate_json(const Certificate& certificate) {
     for (const auto& [claim, text] : claims) {
         if (claim == certificate.claim) json["claim"] = text;
     }
+    if (certificate.kind) json["kind"] = name(*certificate.kind);
     const auto add_energy = [&](const char* key, const std::optional<Rational>& energy) {
         if (energy) json[key] = to_string(*energy);
     };
@@ -176,8 +150,6 @@ std::string certificate_json(const Certificate& certificate) {
     add("ray", vector_json(certificate.ray));
     add("greatest", vector_json(certificate.greatest));
     const auto& proof = certificate.greatest_proof;
-    add("box", bounds_json(proof.box));
-    add("tree", tree_json(proof.tree));
     add("chain", Json(proof.chain));
     add("chain_bounds", bounds_json(proof.chain_bounds));
     return json.dump();
@@ -204,6 +176,12 @@ Certificate parse_certificate(std::string_view text, const std::string& where) {
         }
     }
     if (!known) reader.fail("trivial, empty or nonempty", claim, "claim");
+    if (const Json* kind = reader.optional("kind")) {
+        for (const PatternKind one : pattern_kinds) {
+            if (kind->is_string() && kind->get<std::string>() == name(one)) certificate.kind = one;
+        }
+        if (!certificate.kind) reader.fail("contact, free or stuck", *kind, "kind");
+    }
     const auto energy = [&](const char* key, std::optional<Rational>& target) {
         if (const Json* value = reader.optional(key)) target = reader.fraction(*value, key);
     };
@@ -218,15 +196,7 @@ Certificate parse_certificate(std::string_view text, const std::string& where) {
     vector("greatest", certificate.greatest);
     certificate.rest = reader.bounds("rest");
     auto& proof = certificate.greatest_proof;
-    proof.box = reader.bounds("box");
     proof.chain_bounds = reader.bounds("chain_bounds");
-    if (const Json* tree = reader.optional("tree")) {
-        for (const auto& entry : reader.list(*tree, "tree")) {
-            Reader node(entry, where + ": tree");
-            proof.tree.push_back(node.node());
-            node.finish();
-        }
-    }
     if (const Json* chain = reader.optional("chain")) {
         for (const auto& entry : reader.list(*chain, "chain")) proof.chain.push_back(reader.integer(entry, "chain"));
     }

@@ -58,8 +58,7 @@ Json optimality_json(const std::optional<Optimality>& optimality) {
     return {{"lower_bound", number(optimality->lower_bound)},
             {"gap", optimality->lower_bound ? number(optimality->gap) : Json(nullptr)},
             {"global", optimality->global},
-            {"kkt_residual", number(optimality->kkt_residual)},
-            {"nodes", optimality->nodes}};
+            {"kkt_residual", number(optimality->kkt_residual)}};
 }
 
 Json classification_json(const std::optional<Classification>& kind) {
@@ -70,6 +69,13 @@ Json classification_json(const std::optional<Classification>& kind) {
     object["wall_touches"] = kind->wall_touches;
     object["full_support"] = kind->full_support;
     return object;
+}
+
+Json same_motion_json(const std::optional<Classification>& kind) {
+    if (!kind || !kind->same_motion_as) return nullptr;
+    const MotionLabel& label = *kind->same_motion_as;
+    return {{"free_steps", label.free_steps}, {"contact_steps", label.contact_steps},
+            {"shift_steps", label.shift_steps}, {"reversed", label.reversed}};
 }
 
 }  // namespace
@@ -90,6 +96,9 @@ std::string orbit_json(const OrbitAnswer& answer, const Bar& bar, bool with_seco
     json["frequency_ratio"] = number(pattern.frequency_ratio());
     json["period_s"] = number(pattern.period_steps() * Mesh{pattern.cells}.time_step(bar));
     json["verdict"] = name(answer.verdict);
+    json["kind"] = answer.kind ? Json(name(*answer.kind)) : Json(nullptr);
+    json["forceless"] = answer.classification ? Json(answer.classification->forceless) : Json(nullptr);
+    json["same_motion_as"] = same_motion_json(answer.classification);
     json["reason"] = one_line(answer.reason);
     json["level"] = number(answer.level);
     json["energy_ratio"] = ratio(answer.energy);

@@ -155,7 +155,7 @@ Bar read_bar(const Reader& reader, const toml::table& root) {
 }
 
 PatternSelection read_patterns(const Reader& reader, const toml::table& root, int cells) {
-    static constexpr std::array<std::string_view, 4> known{"mode", "period", "contact", "list"};
+    static constexpr std::array<std::string_view, 5> known{"mode", "period", "contact", "list", "kinds"};
     constexpr const char* one_of = "exactly one of mode, period, list";
     const toml::table& table = reader.table(root, "patterns");
     reader.only(table, "patterns", known);
@@ -206,6 +206,16 @@ PatternSelection read_patterns(const Reader& reader, const toml::table& root, in
         selection.steps.emplace_back(static_cast<int>(steps[0]), static_cast<int>(steps[1]));
     }
     return selection;
+}
+
+/// Whether free and stuck patterns are to be solved too: kinds = "all"; without the key contact motions only.
+bool read_all_kinds(const Reader& reader, const toml::table& root) {
+    constexpr const char* words = "\"contact\" or \"all\"";
+    const toml::table& table = reader.table(root, "patterns");
+    if (!table.contains("kinds")) return false;
+    const std::string text = reader.text(table, "patterns", "kinds", words);
+    if (text != "contact" && text != "all") reader.fail(*table.get("kinds"), "patterns.kinds", words);
+    return text == "all";
 }
 
 std::vector<double> spaced(double from, double to, long count, bool logarithmic) {
@@ -295,6 +305,7 @@ Scene parse_scene(std::string_view text, const std::string& where) {
     reader.only(mesh, "mesh", mesh_keys);
     scene.mesh.cells = static_cast<int>(reader.integer(mesh, "mesh", "cells", 1, max_cells));
     scene.patterns = read_patterns(reader, root, scene.mesh.cells);
+    scene.all_kinds = read_all_kinds(reader, root);
     scene.levels = read_levels(reader, root);
     scene.objective = read_objective(reader, root);
     scene.text = text;

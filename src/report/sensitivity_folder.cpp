@@ -158,7 +158,7 @@ std::string relaxations_text(const Scene& scene, const SensitivityRecords& recor
 
 std::string ablation_text(const Scene& scene, const SensitivityRecords& records) {
     std::string text = fmt::format(
-        "{},kernel_dimension,kernel,cond1,cond2,cond3,cond1_cond2,cond1_cond3,cond2_cond3,all,only\n", pattern_columns);
+        "{},kernel_dimension,kernel,cond1,cond2,cond3,cond1_cond2,cond1_cond3,cond2_cond3,all,only,kind\n", pattern_columns);
     for (const auto& record : records.ablations) {
         const auto& s = record.survives;
         std::string only;  // the one condition without which it would exist
@@ -166,8 +166,9 @@ std::string ablation_text(const Scene& scene, const SensitivityRecords& records)
             const int pairs = s[6] + s[5] + s[3];
             if (pairs == 1) only = s[6] ? "cond1" : s[5] ? "cond2" : "cond3";
         }
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", pattern_fields(scene, record.pattern),
-                            record.kernel_dimension, s[0], s[1], s[2], s[4], s[3], s[5], s[6], s[7], only);
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", pattern_fields(scene, record.pattern),
+                            record.kernel_dimension, s[0], s[1], s[2], s[4], s[3], s[5], s[6], s[7], only,
+                            record.kind ? name(*record.kind) : std::string_view());
     }
     return text;
 }
@@ -182,10 +183,10 @@ std::string funnel_text(const SensitivityRecords& records) {
 }
 
 std::string summary_text(const SensitivitySummary& summary) {
-    return fmt::format("patterns {}, admissible {}\noptima {}: {} nondegenerate, {} tied with their time reversal, {} refused\n"
+    return fmt::format("patterns {}, admissible {}, of which {} are no contact motion and were left\noptima {}: {} nondegenerate, {} tied with their time reversal, {} refused\n"
                        "worst KKT residual {:.1e}, worst defect of Euler's identity {:.1e} (relative)\n"
                        "frequency along a mode, exact against stored neighbours: worst {:.1e} (relative)\n{}",
-                       summary.patterns, summary.admissible, summary.optima, summary.nondegenerate, summary.tied,
+                       summary.patterns, summary.admissible, summary.left, summary.optima, summary.nondegenerate, summary.tied,
                        summary.refused, summary.worst_kkt, summary.worst_euler, summary.worst_frequency,
                        summary.interrupted ? "interrupted: partial results\n" : "");
 }

@@ -34,9 +34,12 @@ std::string summary_json(const SweepSummary& summary) {
     json["trivial"] = summary.trivial;
     json["inadmissible"] = summary.inadmissible;
     json["admissible"] = summary.admissible;
+    for (const PatternKind kind : pattern_kinds) json["kinds"][std::string(name(kind))] = summary.kinds[static_cast<std::size_t>(kind)];
+    json["left"] = summary.left;
     json["failed_patterns"] = summary.failed_patterns;
     json["levels"] = summary.levels;
     json["solved"] = summary.solved;
+    json["copies"] = summary.copies;
     json["closed_form"] = summary.closed_form;
     json["below"] = summary.below;
     json["above"] = summary.above;

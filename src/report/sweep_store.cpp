@@ -4,8 +4,10 @@
 #include <charconv>
 #include <chrono>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -23,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr const char* final_name = "results.sqlite";
 constexpr const char* part_name = "results.sqlite.part";
 // Raised with every change of the tables below, or of what a level's answer follows from.
-constexpr const char* format = "2";
+constexpr const char* format = "3";
 
 std::string hash_of(const std::string& text) {
     std::uint64_t hash = 14695981039346656037U;  // FNV-1a
@@ -215,7 +217,7 @@ struct SweepStore::Implementation {
             for (const auto& [key, value] :
                  {std::pair<const char*, std::string>{"format", format}, {"scene", scene.text},
                   {"scene_hash", hash_of(scene.text)}, {"title", scene.title}, {"software", versions.software},
-                  {"options", versions.options}, {"complete", "0"}, {"seconds", "0"}}) {
+                  {"options", versions.options}, {"kinds", scene.all_kinds ? "all" : "contact"}, {"complete", "0"}, {"seconds", "0"}}) {
                 set_info(key, value);
             }
             transaction.commit();
@@ -310,6 +312,7 @@ SweepStore::SweepStore(const fs::path& folder) : implementation_(std::make_uniqu
         fail(self.file, fmt::format("format of the store: expected {}, got {}", format, self.info("format")));
     }
     self.scene = parse_scene(self.info("scene"), self.file.string());
+    self.scene.all_kinds = self.info("kinds") == "all";
 }
 
 SweepStore::~SweepStore() = default;
@@ -419,18 +422,43 @@ bool SweepStore::beside_complete() const {
     return self.file.filename() == part_name && fs::exists(self.folder / final_name);
 }
 
-Exported export_sweep(const SweepStore& store, const fs::path& folder) {
+namespace {
+
+// The motions of the answers so far, by level and least label.
+class SeenMotions {
+public:
+    // Whether an answer at this place came before with the same motion; if not, it is one from now on.
+    bool before(const OrbitAnswer& answer, int place) {
+        if (!answer.orbit) return false;
+        auto motion = least_label(*answer.orbit);
+        if (!motion) return false;
+        auto& others = motions_[{place, motion->label.free_steps, motion->label.contact_steps}];
+        const bool known = std::any_of(others.begin(), others.end(), [&](const LabelledMotion& other) { return same_motion(*motion, other); });
+        if (!known) others.push_back(std::move(*motion));
+        return known;
+    }
+
+private:
+    std::map<std::tuple<int, int, int>, std::vector<LabelledMotion>> motions_;
+};
+
+}  // namespace
+
+Exported export_sweep(const SweepStore& store, const fs::path& folder, bool distinct) {
     SweepSummary summary;
     std::optional<SweepFolder> files;
+    SeenMotions seen;
     if (!store.beside_complete()) files.emplace(folder, store.scene());
     store.for_each([&](const WorkResult& result) {
         if (result.record) {
-            count(summary, *result.record);
+            count(summary, *result.record, store.scene().all_kinds);
             if (files) files->pattern(*result.record);
         }
         if (result.answer) {
             count(summary, *result.answer, result.place > 0);
-            if (files) files->answer(*result.answer);
+            const bool copy = seen.before(*result.answer, result.place);
+            if (copy && result.place > 0) ++summary.copies;
+            if (files && !(copy && distinct)) files->answer(*result.answer);
         }
     });
     summary.seconds = store.seconds();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* scan_columns =
     "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,verdict,"
-    "energy_ratio_min,energy_ratio_max";
+    "energy_ratio_min,energy_ratio_max,kind";
 
 /// A value that is a ratio E/E_g, hence absent when the gap sets no scale.
 std::optional<double> ratio(const Bar& bar, const std::optional<double>& value) {
@@ -34,6 +34,8 @@ std::string pattern_fields(const Bar& bar, const Pattern& pattern, int dimension
                        csv_number(pattern.frequency_ratio()));
 }
 
+std::string_view kind_text(const std::optional<PatternKind>& kind) { return kind ? name(*kind) : std::string_view(); }
+
 std::string terminal_number(const std::optional<double>& value) {
     return value ? fmt::format("{:.6g}", *value) : std::string("-");
 }
@@ -43,24 +45,24 @@ std::string terminal_number(const std::optional<double>& value) {
 std::string scan_csv_header() { return scan_columns; }
 
 std::string scan_csv_row(const Bar& bar, const PatternRecord& record) {
-    return fmt::format("{},{},{},{}", pattern_fields(bar, record.pattern, record.kernel_dimension),
+    return fmt::format("{},{},{},{},{}", pattern_fields(bar, record.pattern, record.kernel_dimension),
                        name(record.verdict), csv_number(ratio(bar, record.interval.least)),
-                       csv_number(ratio(bar, greatest(record.interval))));
+                       csv_number(ratio(bar, greatest(record.interval))), kind_text(record.kind));
 }
 
 std::string scan_table(const Bar& bar, const std::vector<PatternRecord>& records) {
     const bool closed = bar.gap_sign() == 0;
     std::string table =
-        fmt::format("{:>8} {:>8} {:>8} {:>5} {:>10} {:>10}  {:<12} {:>12} {:>12}\n", "free r",
-                    "contact p", "period", "m", "T/tau", "w/w1", "verdict",
+        fmt::format("{:>8} {:>8} {:>8} {:>5} {:>10} {:>10}  {:<12} {:<8} {:>12} {:>12}\n", "free r",
+                    "contact p", "period", "m", "T/tau", "w/w1", "verdict", "kind",
                     closed ? "E_min [J]" : "E_min/E_g", closed ? "E_max [J]" : "E_max/E_g");
     for (const PatternRecord& record : records) {
         const Pattern& pattern = record.pattern;
         table += fmt::format(
-            "{:>8} {:>9} {:>8} {:>5} {:>10.6g} {:>10.6g}  {:<12} {:>12} {:>12}\n",
+            "{:>8} {:>9} {:>8} {:>5} {:>10.6g} {:>10.6g}  {:<12} {:<8} {:>12} {:>12}\n",
             pattern.free_steps, pattern.contact_steps, pattern.period_steps(),
             record.kernel_dimension, pattern.period_ratio(), pattern.frequency_ratio(),
-            name(record.verdict), terminal_number(record.interval.least),
+            name(record.verdict), record.kind ? name(*record.kind) : "-", terminal_number(record.interval.least),
             record.interval.unbounded ? "inf" : terminal_number(record.interval.greatest));
     }
     return table;
@@ -89,7 +91,7 @@ std::string levels_csv_header() {
            "violation_energy,minimal_period_steps,silent_contact_steps,wall_touches,full_support,"
            "ipopt_status,"
            "ipopt_objective,nlopt_status,nlopt_objective,verdict_proved,objective_bound,objective_gap,"
-           "global,kkt_residual";
+           "global,kkt_residual,kind,forceless,same_free_steps,same_contact_steps,same_shift_steps,same_reversed";
 }
 
 std::string levels_csv_row(const Bar& bar, const OrbitAnswer& answer) {
@@ -138,6 +140,14 @@ std::string levels_csv_row(const Bar& bar, const OrbitAnswer& answer) {
     } else {
         row += ",,,,";
     }
+    add(std::string(kind_text(answer.kind)));
+    add(answer.classification ? fmt::format("{}", answer.classification->forceless) : std::string());
+    if (answer.classification && answer.classification->same_motion_as) {
+        const MotionLabel& label = *answer.classification->same_motion_as;
+        add(fmt::format("{},{},{},{}", label.free_steps, label.contact_steps, label.shift_steps, label.reversed));
+    } else {
+        row += ",,,,";
+    }
     return row;
 }
 
@@ -173,12 +183,16 @@ std::string summary_table(const SweepSummary& summary) {
     count("  trivial (no free amplitude)", summary.trivial);
     count("  inadmissible", summary.inadmissible);
     count("  admissible", summary.admissible);
+    const char* const meaning[] = {"    contact motions", "    free: no force, a grazing vibration", "    stuck: never leave the wall"};
+    for (std::size_t kind = 0; kind < summary.kinds.size(); ++kind) count(meaning[kind], summary.kinds[kind]);
+    count("    not solved: no contact motion", summary.left);
     count("  failed", summary.failed_patterns);
     count("  without an exact proof", summary.unproved);
     count("  admissible, greatest energy open", summary.open_bounds);
     count("energy levels asked", summary.levels);
     count("  solved", summary.solved);
     count("    proved the best at their level", summary.global);
+    count("    a motion solved above once more", summary.copies);
     count("    closed form, or proved alone", summary.closed_form);
     count("    solvers agree", summary.agreed);
     count("    solvers at different optima", summary.disagreed);

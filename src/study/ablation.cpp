@@ -78,6 +78,7 @@ AblationRecord ablation_record(const Kernel& kernel, int gap_sign) {
     AblationRecord record;
     record.pattern = kernel.pattern;
     record.kernel_dimension = kernel.dimension();
+    record.kind = pattern_kind(kernel.pattern);
     if (kernel.dimension() == 0) return record;
     const RelaxedSet set = relaxed_set(kernel, gap_sign);
     const Conditions signs = conditions(kernel, gap_sign);

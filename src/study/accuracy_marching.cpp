@@ -23,7 +23,7 @@ struct Reference {
         Pattern pattern = accuracy_pattern(2, bar.gap_sign());
         const int times = cells / pattern.cells;
         pattern = {cells, times * pattern.free_steps, times * pattern.contact_steps};
-        const PatternProblem problem = pattern_problem(pattern, bar.gap_sign(), {{false}, false, {}});
+        const PatternProblem problem = pattern_problem(pattern, bar.gap_sign(), {.prove = false});
         orbit = make_orbit(bar, problem.kernel, problem.set.reduction.beta(problem.set.least));
         state = initial_state(orbit);
         tips = tip_displacement(orbit);

@@ -9,8 +9,6 @@
 #include <stdexcept>
 
 #include "guarded_solver.hpp"
-#include "nsma/program/conic_bound.hpp"
-#include "nsma/program/lifted_program.hpp"
 #include "nsma/program/polish.hpp"
 #include "nsma/program/restore.hpp"
 
@@ -20,7 +18,6 @@ namespace {
 constexpr double best_tolerance = 1e-6;  // relative: the cross-check's own
 constexpr double warm_level = 1.02;
 constexpr int reference_starts = 16;  // the reference may cost more than any method
-constexpr int relaxation_limit = 10;   // unknowns; beyond, relaxations take seconds and leave a gap
 constexpr int pose_repeats = 5;
 constexpr int ipopt_iterations = 500;
 constexpr int nlopt_evaluations = 20'000;
@@ -114,9 +111,6 @@ std::vector<ProgramMethod> program_methods(bool quick) {
             }
         }
     }
-    for (const bool polish : {false, true}) {
-        methods.push_back({Kind::ipopt, NloptMethod::slsqp, "Ipopt lifted", 1e-8, polish, false, true});
-    }
     const auto add = [&](NloptMethod method, const char* label, const std::vector<double>& at) {
         for (const double tolerance : at) {
             for (const bool polish : {false, true}) {
@@ -169,8 +163,6 @@ ProgramCase::ProgramCase(const Bar& the_bar, const PatternProblem& the_problem, 
     best_x = program.point(gamma_at(level, answer));
     best = *answer.objective_value;
     proved = answer.optimality && answer.optimality->global;
-    const Polished polished = polish(program.program, best_x);
-    if (!certified(polished)) bound_objective(polished.objective);
     // Upward unless that leaves the interval.
     const bool up = problem.interval.unbounded || level * warm_level < problem.interval.greatest.value_or(0.0);
     const double near = up ? level * warm_level : level / warm_level;
@@ -193,19 +185,6 @@ double ProgramCase::posing_seconds() const {
     return spread(std::move(seconds)).median;
 }
 
-void ProgramCase::bound_objective(double objective) {
-    const double wanted = objective - best_tolerance * std::abs(objective);
-    const double begin = cpu_seconds();
-    bound_holds = product_bound(program.program) >= wanted;
-    if (!bound_holds && program.program.variables() <= relaxation_limit) {
-        ConicBoundOptions bounding;
-        bounding.node_limit = OrbitSolverOptions{}.bound_nodes;
-        bound_holds = conic_bound(program.program, objective, bounding).value >= wanted;
-    }
-    bound_seconds = cpu_seconds() - begin;
-    proved = proved || bound_holds;
-}
-
 MethodRunner::MethodRunner(const ProgramMethod& method, double time_limit) : method_(method) {
     options_.tolerance = method.tolerance;
     options_.time_limit = time_limit;
@@ -217,15 +196,11 @@ MethodRunner::MethodRunner(const ProgramMethod& method, double time_limit) : met
     if (method.kind == ProgramMethod::Kind::ipopt) ipopt_ = std::make_unique<IpoptSolver>(options_);
 }
 
-SolverOutcome MethodRunner::call(const ProgramCase& on, const Program& posed, const Eigen::VectorXd& start) {
+SolverOutcome MethodRunner::call(const Program& posed, const Eigen::VectorXd& start) {
     if (method_.kind == ProgramMethod::Kind::segment) return {start, "segment", 0, 0.0};
     const double begin = cpu_seconds();
     SolverOutcome outcome;
-    if (method_.lifted) {
-        const LiftedProgram lifted = lifted_program(on.program, on.problem.set.reduction, on.problem.kernel);
-        outcome = ipopt_->solve(lifted.program, lifted.point(start));
-        outcome.x.conservativeResize(start.size());
-    } else if (method_.kind == ProgramMethod::Kind::ipopt) {
+    if (method_.kind == ProgramMethod::Kind::ipopt) {
         outcome = ipopt_->solve(posed, start);
     } else if (method_.nlopt == NloptMethod::cobyla || method_.nlopt == NloptMethod::isres) {
         return solve_guarded(method_.nlopt, posed, start, options_, 2 * options_.time_limit + 1);
@@ -250,7 +225,7 @@ Trial MethodRunner::run(const ProgramCase& on, const Program& posed, const Eigen
         trial.certified = answer.optimality && answer.optimality->global;
         orbit = answer.orbit;
     } else {
-        const SolverOutcome outcome = call(on, posed, method_.warm ? on.warm_x : start);
+        const SolverOutcome outcome = call(posed, method_.warm ? on.warm_x : start);
         trial.seconds = on.pose_seconds + outcome.seconds;
         trial.status = outcome.status;
         trial.iterations = outcome.iterations;
@@ -284,11 +259,6 @@ Trial MethodRunner::run(const ProgramCase& on, const Program& posed, const Eigen
     const double value = objective_of_waves(on.problem.kernel, on.objective, orbit->beta, on.reference);
     trial.gap = std::abs(value - on.best) / std::abs(on.best);
     trial.violation = judged.violations.worst();
-    if (method_.polish && !method_.whole() && !trial.certified) {
-        // No answer changes this bound, so its cost was measured once.
-        trial.seconds += on.bound_seconds;
-        trial.certified = on.bound_holds && judged.accepted && trial.gap <= best_tolerance;
-    }
     if (!judged.accepted) {
         trial.outcome = refusal(judged, trial.status);
     } else {

@@ -18,6 +18,7 @@ constexpr std::array objectives{Objective::least_shock, Objective::nearest, Obje
 const auto& all_of(Verdict) { return verdicts; }
 const auto& all_of(Agreement) { return agreements; }
 const auto& all_of(Objective) { return objectives; }
+const auto& all_of(PatternKind) { return pattern_kinds; }
 
 // The fields of each record, once, for writing, reading and naming. A group is an optional part
 // whose first field is never without a value.
@@ -29,6 +30,7 @@ void pattern_fields(Record& record, Fields& fields) {
     fields("gap_sign", record.gap_sign);
     fields("kernel_dimension", record.kernel_dimension);
     fields("verdict", record.verdict);
+    fields("kind", record.kind);
 }
 
 template <class Interval, class Fields>
@@ -50,6 +52,10 @@ void record_fields(Record& record, Fields& fields) {
     fields("seconds", record.seconds);
 }
 
+std::optional<MotionLabel> same_motion_of(const OrbitAnswer& answer) {
+    return answer.classification ? answer.classification->same_motion_as : std::nullopt;
+}
+
 template <class Answer, class Fields>
 void answer_fields(Answer& answer, Fields& fields) {
     pattern_fields(answer, fields);
@@ -68,7 +74,6 @@ void answer_fields(Answer& answer, Fields& fields) {
         fields("objective_bound", optimality.lower_bound);
         fields("objective_gap", optimality.gap);
         fields("kkt_residual", optimality.kkt_residual);
-        fields("bound_nodes", optimality.nodes);
     });
     fields.group(answer.replay, [&](auto& replay) {
         fields("replay_accepted", replay.accepted);
@@ -83,9 +88,20 @@ void answer_fields(Answer& answer, Fields& fields) {
         fields("minimal_period_steps", kind.minimal_period_steps);
         fields("silent_contact_steps", kind.silent_contact_steps);
         fields("wall_touches", kind.wall_touches);
+        fields("forceless", kind.forceless);
         fields("full_support", kind.full_support);
         fields("classification_tolerance", kind.tolerance);
     });
+    auto same = same_motion_of(answer);
+    fields.group(same, [&](auto& label) {
+        fields("same_free_steps", label.free_steps);
+        fields("same_contact_steps", label.contact_steps);
+        fields("same_shift_steps", label.shift_steps);
+        fields("same_reversed", label.reversed);
+    });
+    if constexpr (!std::is_const_v<Answer>) {
+        if (answer.classification) answer.classification->same_motion_as = same;
+    }
     fields("seconds", answer.seconds);
 }
 
@@ -136,6 +152,15 @@ public:
     template <class Enum>
         requires std::is_enum_v<Enum>
     void operator()(const char*, Enum value) { put(std::string(name(value))); }
+    template <class Enum>
+        requires std::is_enum_v<Enum>
+    void operator()(const char* name, const std::optional<Enum>& value) {
+        if (value) {
+            (*this)(name, *value);
+        } else {
+            put(std::monostate{});
+        }
+    }
     template <class Part, class Visit>
     void group(const std::optional<Part>& part, Visit visit) {
         const Part none{};
@@ -185,6 +210,16 @@ public:
             }
         }
         fail(what);
+    }
+    template <class Enum>
+        requires std::is_enum_v<Enum>
+    void operator()(const char* name, std::optional<Enum>& value) {
+        if (std::holds_alternative<std::monostate>(peek(name))) {
+            ++next_;
+            value.reset();
+        } else {
+            (*this)(name, value.emplace());
+        }
     }
     template <class Part, class Visit>
     void group(std::optional<Part>& part, Visit visit) {

@@ -1,7 +1,6 @@
 #include "nsma/study/scan.hpp"
 
 #include <chrono>
-#include <cmath>
 
 namespace nsma {
 
@@ -11,6 +10,7 @@ PatternRecord pattern_record(const PatternProblem& problem, int gap_sign, double
     record.gap_sign = gap_sign;
     record.kernel_dimension = problem.kernel.dimension();
     record.verdict = problem.verdict;
+    record.kind = problem.kind;
     record.interval = problem.interval;
     record.proved = problem.proof.verdict_proved;
     record.reason = problem.set.reason;
@@ -35,8 +35,7 @@ std::string_view argument(Finding finding) {
 
 namespace {
 
-// The sieve's word on one pattern, checked by a linear program and least norm if `linear`.
-PatternRecord sieved_record(const Pattern& pattern, int gap_sign, const Sieved& sieved, bool linear) {
+PatternRecord sieved_record(const Pattern& pattern, int gap_sign, const Sieved& sieved) {
     PatternRecord record;
     record.pattern = pattern;
     record.gap_sign = gap_sign;
@@ -47,22 +46,10 @@ PatternRecord sieved_record(const Pattern& pattern, int gap_sign, const Sieved& 
         return record;
     }
     record.verdict = Verdict::admissible;
+    record.kind = pattern_kind(pattern);
     record.interval.unbounded = sieved.unbounded;
     record.interval.least = sieved.energy_least;
     if (!sieved.unbounded) record.interval.greatest = sieved.energy_greatest;
-    if (!linear) return record;
-    PatternOptions options;
-    options.admissible.greatest = false;
-    options.admissible.closed_form = false;  // by another way than the sieve
-    options.prove = false;
-    const PatternProblem problem = pattern_problem(pattern, gap_sign, options);
-    // Least norm over integers of at most 2N: rounding only.
-    constexpr double rounding = 1e-9;
-    if (problem.verdict != Verdict::admissible ||
-        std::abs(*problem.interval.least - sieved.energy_least) > rounding * sieved.energy_least) {
-        record.verdict = Verdict::failed;
-        record.reason = "the linear program and the sieve disagree: " + problem.set.reason;
-    }
     return record;
 }
 
@@ -79,8 +66,7 @@ void scan(const Scene& scene, const std::function<void(const PatternRecord&)>& r
         if (method == ScanMethod::certified) {
             found = pattern_record(pattern_problem(pattern, gap_sign), gap_sign, 0.0);
         } else {
-            found = sieved_record(pattern, gap_sign, sieve(pattern.free_steps, pattern.contact_steps),
-                                  method == ScanMethod::linear);
+            found = sieved_record(pattern, gap_sign, sieve(pattern.free_steps, pattern.contact_steps));
         }
         found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         record(found);

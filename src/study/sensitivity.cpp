@@ -74,8 +74,12 @@ private:
         const RelaxedSet set = relaxed_set(problem.kernel, gap_sign_);
         const bool admissible = problem.verdict == Verdict::admissible;
         std::optional<double> curve_level;
+        if (admissible) ++summary_.admissible;
+        if (admissible && !request_.pattern && !is_solved(scene_.all_kinds, problem.kind)) {
+            ++summary_.left;
+            return;
+        }
         if (admissible) {
-            ++summary_.admissible;
             curve_level = optima(problem);
             if (gap_sign_ != 0) {
                 IntervalRecord record = interval_record(set);

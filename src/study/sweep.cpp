@@ -21,7 +21,7 @@ SweepSummary sweep(const Scene& scene, const OrbitSolverOptions& options, SweepS
         const long before = queue.done_count();
         queue.done(result);
         if (result.record) {
-            count(summary, *result.record);
+            count(summary, *result.record, scene.all_kinds);
             sink.pattern(*result.record);
         }
         if (result.answer) {

@@ -18,7 +18,7 @@ std::size_t at(long index) { return static_cast<std::size_t>(index); }
 }  // namespace
 
 SweepQueue::SweepQueue(const Scene& scene, const OrbitSolverOptions& options, Order order)
-    : options_(options), nearest_(scene.objective == Objective::nearest),
+    : options_(options), all_kinds_(scene.all_kinds), nearest_(scene.objective == Objective::nearest),
       first_place_(is_extreme(scene.objective) || scene.bar.gap_sign() == 0 ? 1 : 0),
       last_place_(is_extreme(scene.objective) ? 1 : static_cast<int>(scene.levels.size())) {
     const auto patterns = patterns_of(scene);
@@ -90,14 +90,14 @@ void SweepQueue::decided(const WorkResult& result) {
     state = State::done;
     --undecided_;
     ++done_;
-    if (result.record->verdict != Verdict::admissible || last_place_ < first_place_) return;
+    if (!is_solved(all_kinds_, result.record->kind) || last_place_ < first_place_) return;
     total_ += last_place_;
     Open& open = open_[result.pattern];
     open.left = last_place_ + 1 - first_place_;
     open.places.assign(at(open.left), State::left);
     if (nearest_) {
         open.strand_length = std::max(last_place_, 1);
-    } else if (ipopt_is_usual(options_, result.record->kernel_dimension)) {
+    } else if (ipopt_is_usual(options_)) {
         open.strand_length = warm_strand;
     }
     open.available = strands(open);

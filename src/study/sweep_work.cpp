@@ -17,8 +17,12 @@ std::size_t at(long index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
-void count(SweepSummary& summary, const PatternRecord& record) {
+void count(SweepSummary& summary, const PatternRecord& record, bool all_kinds) {
     ++summary.patterns;
+    if (record.kind) {
+        ++summary.kinds[static_cast<std::size_t>(*record.kind)];
+        if (!is_solved(all_kinds, record.kind)) ++summary.left;
+    }
     if (!record.proved) ++summary.unproved;
     const auto& interval = record.interval;
     if (record.verdict == Verdict::admissible && record.gap_sign != 0 && !interval.unbounded &&
@@ -102,7 +106,7 @@ std::vector<WorkResult> SweepWorker::run(const std::vector<WorkUnit>& units) {
     int brought = 0;
     for (const WorkUnit& unit : units) {
         results.push_back(run(unit));
-        if (unit.place >= 0 || problem_.verdict != Verdict::admissible || is_extreme(scene_.objective)) continue;
+        if (unit.place >= 0 || !is_solved(scene_.all_kinds, problem_.kind) || is_extreme(scene_.objective)) continue;
         for (std::size_t level = 0; level < scene_.levels.size() && brought < most_brought; ++level) {
             if (!solver_.outside(problem_.interval, scene_.levels[level])) continue;
             results.push_back(run(WorkUnit{unit.pattern, static_cast<int>(level) + 1, {}}));

@@ -14,7 +14,6 @@
 #include "nsma/orbit/dense_kernel.hpp"
 #include "nsma/orbit/sieve.hpp"
 #include "nsma/program/level_points.hpp"
-#include "nsma/program/lifted_program.hpp"
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/orbit_solver.hpp"
 #include "nsma/program/solver.hpp"
@@ -62,9 +61,7 @@ void scan_all(benchmark::State& state, ScanMethod method) {
     }
     label(state, {{"admissible", static_cast<double>(admissible)}, {"failed", static_cast<double>(failed)}});
 }
-void scan_linear(benchmark::State& state) { scan_all(state, ScanMethod::linear); }
 void scan_certified(benchmark::State& state) { scan_all(state, ScanMethod::certified); }
-BENCHMARK(scan_linear)->Arg(25)->Arg(50)->Arg(100)->Unit(benchmark::kMillisecond)->Iterations(1);
 BENCHMARK(scan_certified)->Arg(25)->Arg(50)->Arg(100)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 // The kernel of (16 N/6, 4 N/6), m = N/1.5, by cycles and by singular values of the literal matrix.
@@ -138,40 +135,6 @@ void solve_ipopt(benchmark::State& state) { solve(state, true); }
 void solve_nlopt(benchmark::State& state) { solve(state, false); }
 BENCHMARK(solve_ipopt)->Arg(7)->Arg(15)->Arg(31)->Arg(63)->Unit(benchmark::kMillisecond);
 BENCHMARK(solve_nlopt)->Arg(7)->Arg(15)->Arg(31)->Arg(63)->Unit(benchmark::kMillisecond);
-
-// Two places a class and none in contact, n_T = 4N, m = 0.8 N: one solve by Ipopt of the condensed and of the lifted
-// program. The number is m; 400 has N = 500.
-void solve_form(benchmark::State& state, bool lifted) {
-    const int m = static_cast<int>(state.range(0));
-    // N = 5m/4: n_T = 4N, g = 2N, p = g - m.
-    const int cells = 5 * m / 4;
-    const Kernel kernel = exact_kernel({cells, 2 * cells + m, 2 * cells - m});
-    const Reduction reduction = reduce(conditions(kernel, 1));
-    const double level = 0.3 * reduction.energy_factor * m;
-    const OrbitProgram condensed = orbit_program(reduction, kernel, Objective::least_shock, level, 0.0);
-    // P_k falls to -1 and comes back once a few places: on the level after scaling toward the steepest.
-    Eigen::VectorXd low = Eigen::VectorXd::Constant(m, -1.0 / m), high(m);
-    for (int k = 0; k < m; ++k) high[k] = k % 2 == 0 ? -1.0 : k + 1 < m ? 1.0 : 0.0;
-    double from = 0, to = 1;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = (from + to) / 2;
-        ((low + middle * (high - low)).squaredNorm() * reduction.energy_factor < level ? from : to) = middle;
-    }
-    const Eigen::VectorXd start = condensed.point(low + from * (high - low));
-    const LiftedProgram other = lifted_program(condensed, reduction, kernel);
-    const Program& program = lifted ? other.program : condensed.program;
-    const Eigen::VectorXd begin = lifted ? other.point(start) : start;
-    IpoptSolver ipopt(SolverOptions{.tolerance = 1e-8, .time_limit = 60.0});
-    SolverOutcome outcome;
-    for (auto _ : state) outcome = ipopt.solve(program, begin);
-    label(state, {{"iterations", static_cast<double>(outcome.iterations)},
-                  {"violation", program.violation(outcome.x)},
-                  {"nonzeros", static_cast<double>(program.inequalities.nonZeros() + program.equalities.nonZeros())}});
-}
-void solve_condensed(benchmark::State& state) { solve_form(state, false); }
-void solve_lifted(benchmark::State& state) { solve_form(state, true); }
-BENCHMARK(solve_condensed)->Arg(48)->Arg(96)->Arg(192)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(solve_lifted)->Arg(48)->Arg(96)->Arg(192)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 // The same patterns from end to end at 1.5 E_min: verdict and interval with their proof, then the level by Ipopt alone,
 // polished, bounded and replayed.

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "nsma/orbit/backbone.hpp"
-#include "nsma/program/admissible_set.hpp"
+
+#include "../program/general_set.hpp"
 
 namespace nsma {
 namespace {
@@ -15,7 +16,7 @@ void expect_agreement(int cells, int gap_sign, int period_hi, bool greatest) {
     for (const Pattern& pattern : patterns_in(cells, {2, period_hi})) {
         const Sieved quick = sieve(pattern.free_steps, pattern.contact_steps);
         const Kernel kernel = exact_kernel(pattern);
-        const AdmissibleSet set = admissible_set(reduce(conditions(kernel, gap_sign)), {greatest});
+        const AdmissibleSet set = oracle::general_set(reduce(conditions(kernel, gap_sign)));
         const auto where = testing::Message() << "N " << cells << ", (" << pattern.free_steps << ", "
                                               << pattern.contact_steps << "), gap sign " << gap_sign;
         ASSERT_EQ(quick.kernel_dimension, kernel.dimension()) << where;

@@ -10,6 +10,7 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
+#include "general_set.hpp"
 #include "nsma/orbit/backbone.hpp"
 #include "nsma/orbit/replay.hpp"
 
@@ -244,14 +245,6 @@ TEST(AdmissibleSet, PublicIntervals) {
     EXPECT_NEAR(*set_of({6, 23, 1}, 1).interval().least, 12.0 / 11.0, 1e-13);
 }
 
-TEST(AdmissibleSet, WithoutTheGreatestNothingElseChanges) {
-    const auto full = set_of({6, 23, 1}, 1);
-    const auto lean = admissible_set(reduce(conditions(exact_kernel({6, 23, 1}), 1)), {.greatest = false});
-    EXPECT_EQ(lean.status, Status::nonempty);
-    EXPECT_EQ(lean.least, full.least);
-    EXPECT_FALSE(lean.interval().greatest.has_value());
-}
-
 TEST(AdmissibleSet, ClosedGapHoldsTheModesAtTheirLimitPeriod) {
     int checked = 0;
     for (int mode = 1; mode <= 4; ++mode) {
@@ -293,9 +286,9 @@ Reduction by_hand(const Eigen::VectorXi& contact_row, const std::vector<std::uin
     return reduction;
 }
 
-TEST(AdmissibleSet, UnboundedByHand) {
+TEST(GeneralSet, UnboundedByHand) {
     // a - b = 1, a, b >= 0: least (1, 0), direction (1, 1).
-    const auto wedge = admissible_set(by_hand(Eigen::VectorXi{{1, -1}}, {1, 1}));
+    const auto wedge = oracle::general_set(by_hand(Eigen::VectorXi{{1, -1}}, {1, 1}));
     ASSERT_EQ(wedge.status, Status::nonempty) << wedge.reason;
     ASSERT_TRUE(wedge.unbounded());
     EXPECT_LT((wedge.least - Eigen::Vector2d(1, 0)).norm(), 1e-14);
@@ -303,7 +296,7 @@ TEST(AdmissibleSet, UnboundedByHand) {
     EXPECT_NEAR(*wedge.interval().least, 4, 1e-14);
     EXPECT_FALSE(wedge.interval().greatest.has_value());
     // 2a = 1 with b free: a whole line.
-    const auto line = admissible_set(by_hand(Eigen::VectorXi{{2, 0}}, {1, 0}));
+    const auto line = oracle::general_set(by_hand(Eigen::VectorXi{{2, 0}}, {1, 0}));
     ASSERT_EQ(line.status, Status::nonempty) << line.reason;
     ASSERT_TRUE(line.unbounded());
     EXPECT_NEAR(std::abs(line.ray[1]), 1, 1e-14);
@@ -313,22 +306,28 @@ TEST(AdmissibleSet, UnboundedByHand) {
     cut.rows.resize(2, 2);
     cut.rows << -1, 1, -1, -1;
     cut.row_step = {1, 2};
-    const auto segment = admissible_set(cut);
+    const auto segment = oracle::general_set(cut);
     ASSERT_EQ(segment.status, Status::nonempty) << segment.reason;
     EXPECT_FALSE(segment.unbounded());
     EXPECT_NEAR(*segment.interval().greatest, 2, 1e-13);
 }
 
-TEST(AdmissibleSet, EmptyByRowsByHand) {
+TEST(GeneralSet, EmptyByRowsByHand) {
     // a + b = 1, a, b >= 0 and a + b <= 0.
     Reduction reduction = by_hand(Eigen::VectorXi{{1, 1}}, {1, 1});
     reduction.rows = Eigen::RowVector2i(1, 1);
     reduction.row_step = {1};
-    const auto set = admissible_set(reduction);
+    const auto set = oracle::general_set(reduction);
     EXPECT_EQ(set.status, Status::empty);
     EXPECT_FALSE(set.interval().least.has_value());
     EXPECT_FALSE(set.interval().greatest.has_value());
     EXPECT_FALSE(set.interval().unbounded);
+}
+
+TEST(AdmissibleSet, SaysWhenASetIsOfNoKnownShape) {
+    const auto wedge = admissible_set(by_hand(Eigen::VectorXi{{1, -1}}, {1, 1}));
+    EXPECT_EQ(wedge.status, Status::failed);
+    EXPECT_EQ(wedge.reason, "COND1-3 leave neither a simplex nor a chain");
 }
 
 TEST(AdmissibleSet, ClosedGapRaysAreOrbitsAtAnyEnergy) {

@@ -39,7 +39,6 @@ OrbitSolverOptions quick() {
     OrbitSolverOptions options;
     options.solvers = nsma::SolverChoice::nlopt;
     options.starts = 1;
-    options.bound_nodes = 0;
     return options;
 }
 

@@ -109,30 +109,6 @@ TEST(LevelPoints, LevelOutsideTheIntervalGivesNothing) {
     }
 }
 
-TEST(LevelPoints, UnboundedSetReachesEveryLevel) {
-    // a - b = 1, a, b >= 0, E = a^2 + b^2: from (1, 0) along (1, 1) for ever.
-    nsma::Reduction reduction;
-    reduction.energy_factor = 1;
-    reduction.kernel_dimension = 2;
-    reduction.column = {0, 1};
-    reduction.flip = {1, 1};
-    reduction.bounded = {1, 1};
-    reduction.contact_row = Eigen::VectorXi{{1, -1}};
-    reduction.rows.resize(0, 2);
-    const auto set = admissible_set(reduction);
-    ASSERT_TRUE(set.unbounded());
-    for (const double level : {1.0, 1.5, 100.0, 1e8}) {
-        const LevelPoints points(set, level);
-        for (int k = 0; k <= 10; ++k) {
-            const auto start = points.start(k);
-            ASSERT_TRUE(start);
-            EXPECT_NEAR(start->squaredNorm(), level, 1e-13 * level);
-            EXPECT_NEAR((*start)[0] - (*start)[1], 1, 1e-14 * std::sqrt(level) * 4);
-            EXPECT_GE(start->minCoeff(), 0.0);
-        }
-    }
-}
-
 TEST(LevelPoints, ClosedGapScalesItsDirections) {
     // Mode 1 at its limit period T = 3 tau: N = 4, (8, 4).
     const Pattern pattern{4, 8, 4};

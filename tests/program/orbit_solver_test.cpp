@@ -31,21 +31,10 @@ Bar bar_with_gap(double gap) {
     return bar;
 }
 
-/// Both solvers, what they agree about being tested; with sanitizers few relaxations, which are dense linear algebra and 20 times slower there.
+/// Both solvers, what they agree about being tested.
 OrbitSolverOptions usual() {
     OrbitSolverOptions options;
     options.solvers = SolverChoice::both;
-#ifdef __SANITIZE_ADDRESS__
-    options.bound_nodes = 1;
-#endif
-    return options;
-}
-
-/// For tests of many levels, where the bound on the objective is not looked at.
-OrbitSolverOptions unbounded() {
-    OrbitSolverOptions options;
-    options.solvers = SolverChoice::both;
-    options.bound_nodes = 0;
     return options;
 }
 
@@ -272,7 +261,7 @@ TEST(OrbitSolver, OneSolverAlone) {
     }
 }
 
-TEST(OrbitSolver, ProofNeedsNoSolverWhereTheSegmentPointIsProvedBest) {
+TEST(OrbitSolver, ASimplexNeedsNoSolver) {
     const Pattern pattern{20, 48, 16};
     for (const double factor : {1.01, 1.5, 3.0, 7.9}) {
         const OrbitRequest request{.level = factor * least_energy(pattern, 1), .reference = {}};
@@ -283,7 +272,9 @@ TEST(OrbitSolver, ProofNeedsNoSolverWhereTheSegmentPointIsProvedBest) {
         expect_sound(proof);
         // Not above the cross-checked answer by more than the agreement asked for.
         EXPECT_LE(*proof.objective_value, *both.objective_value * (1 + 1e-6));
-        if (proof.method != "segment") continue;
+        EXPECT_EQ(proof.method, "closed-form");
+        EXPECT_TRUE(proof.solvers.empty());
+        EXPECT_FALSE(both.solvers.empty());
         EXPECT_EQ(proof.agreement, Agreement::not_needed);
         EXPECT_TRUE(proof.optimality && proof.optimality->global);
     }
@@ -292,9 +283,9 @@ TEST(OrbitSolver, ProofNeedsNoSolverWhereTheSegmentPointIsProvedBest) {
 TEST(OrbitSolver, IpoptStartsFromAnOrbitAtALevelNearby) {
     const Pattern pattern{20, 48, 16};
     const double least = least_energy(pattern, 1);
-    const auto near = solve(pattern, 1, {.level = 1.6 * least}, unbounded());
-    const auto cold = solve(pattern, 1, {.level = 1.5 * least}, unbounded());
-    const auto warm = solve(pattern, 1, {.level = 1.5 * least, .start = near.orbit->beta}, unbounded());
+    const auto near = solve(pattern, 1, {.level = 1.6 * least}, usual());
+    const auto cold = solve(pattern, 1, {.level = 1.5 * least}, usual());
+    const auto warm = solve(pattern, 1, {.level = 1.5 * least, .start = near.orbit->beta}, usual());
     expect_sound(warm);
     EXPECT_NEAR(*warm.objective_value, *cold.objective_value, 1e-6 * *cold.objective_value);  // the agreement asked for
     const auto first = [](const OrbitAnswer& answer, const char* name) {
@@ -311,16 +302,17 @@ TEST(OrbitSolver, IpoptStartsFromAnOrbitAtALevelNearby) {
 TEST(OrbitSolver, AUselessStartIsMadeGoodByThatOfTheLevel) {
     const Pattern pattern{20, 48, 16};
     const double least = least_energy(pattern, 1);
-    OrbitSolverOptions options = unbounded();
+    OrbitSolverOptions options = usual();
     options.solvers = SolverChoice::ipopt;
     options.starts = 1;
     options.raw_violation = -1;  // nothing is good enough
-    const auto near = solve(pattern, 1, {.level = 1.6 * least}, unbounded());
+    const auto near = solve(pattern, 1, {.level = 1.6 * least}, usual());
     const auto answer = solve(pattern, 1, {.level = 1.5 * least, .start = near.orbit->beta}, options);
     std::vector<int> starts;
     for (const auto& run : answer.solvers) starts.push_back(run.start);
-    std::sort(starts.begin(), starts.end());
-    EXPECT_EQ(starts, (std::vector<int>{-1, 0}));
+    ASSERT_GE(starts.size(), 2U);
+    EXPECT_EQ(std::count(starts.begin(), starts.end(), -1), 1);
+    EXPECT_EQ(std::count(starts.begin(), starts.end(), 0), 1);
 }
 
 TEST(OrbitSolver, AStartOfAnotherPatternIsMisuse) {
@@ -339,8 +331,8 @@ TEST(OrbitSolver, StarvedSolversStillGiveAnOrbitAndSaySo) {
     const auto answer = solve(pattern, 1, {.level = 1.5 * least_energy(pattern, 1), .reference = {}}, options);
     EXPECT_EQ(answer.agreement, Agreement::both_failed);
     expect_sound(answer);
-    EXPECT_EQ(answer.method, "segment");
-    EXPECT_FALSE(answer.reason.empty());
+    EXPECT_EQ(answer.method, "closed-form");
+    EXPECT_EQ(answer.reason, "no solver came to the best orbit known, found by the closed-form");
     for (const auto& run : answer.solvers) EXPECT_FALSE(run.usable);
 }
 
@@ -360,7 +352,7 @@ TEST(OrbitSolver, TwoRunsGiveTheSameBits) {
 }
 
 TEST(OrbitSolver, ManyLevelsOfManyPatternsAreSound) {
-    OrbitSolver solver(unbounded());
+    OrbitSolver solver(usual());
     int solved = 0;
     for (const int gap_sign : {-1, 1}) {
         for (int period = 2; period <= 24; ++period) {
@@ -385,7 +377,7 @@ TEST(OrbitSolver, ManyLevelsOfManyPatternsAreSound) {
 
 // Polishing came to a point that its active rows and the sphere determine alone, and crashed.
 TEST(OrbitSolver, ActiveRowsMayDetermineTheOrbit) {
-    const auto answer = solve({20, 46, 18}, 1, {.level = 100.0, .reference = {}}, unbounded());
+    const auto answer = solve({20, 46, 18}, 1, {.level = 100.0, .reference = {}}, usual());
     expect_sound(answer);
 }
 
@@ -412,7 +404,7 @@ TEST(OrbitSolver, Misuse) {
 TEST(OrbitSolver, LevelsAFewRoundingsInsideTheIntervalHaveAnOrbit) {
     for (const auto& pattern : {Pattern{6, 16, 4}, {6, 23, 1}, {20, 60, 10}}) {
         const auto problem = pattern_problem(pattern, 1);
-        OrbitSolver solver(unbounded());
+        OrbitSolver solver(usual());
         for (const bool greatest : {false, true}) {
             const double end = greatest ? *problem.interval.greatest : *problem.interval.least;
             double level = end;

@@ -41,7 +41,7 @@ Shift times(const Shift& direction, double t) {
     return result;
 }
 
-// Patterns that some orbit meets, with their parametric sets.
+// Contact motions, with their parametric sets.
 struct Case {
     nsma::PatternProblem problem;
     RelaxedSet set;
@@ -53,7 +53,7 @@ std::vector<Case> cases(int cells, int gap_sign) {
     options.prove = false;
     for (const auto& pattern : nsma::patterns_in(cells, {2, 4 * cells, 1, nsma::max_period_steps})) {
         auto problem = nsma::pattern_problem(pattern, gap_sign, options);
-        if (problem.verdict != nsma::Verdict::admissible) continue;
+        if (problem.kind != nsma::PatternKind::contact) continue;
         RelaxedSet set = nsma::relaxed_set(problem.kernel, gap_sign);
         result.push_back({std::move(problem), std::move(set)});
     }
@@ -63,7 +63,6 @@ std::vector<Case> cases(int cells, int gap_sign) {
 nsma::OrbitSolverOptions quick() {
     nsma::OrbitSolverOptions options;
     options.solvers = nsma::SolverChoice::nlopt;
-    options.bound_nodes = 0;
     options.starts = 4;
     return options;
 }

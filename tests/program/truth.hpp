@@ -24,9 +24,9 @@ inline std::vector<Pattern> patterns(int cells) {
     return result;
 }
 
-inline nsma::Proof proof_of(const Pattern& pattern, int gap_sign, const nsma::ProveOptions& options = {}) {
+inline nsma::Proof proof_of(const Pattern& pattern, int gap_sign) {
     const auto kernel = nsma::exact_kernel(pattern);
-    return nsma::prove(kernel, nsma::admissible_set(nsma::reduce(nsma::conditions(kernel, gap_sign))), options);
+    return nsma::prove(kernel, nsma::admissible_set(nsma::reduce(nsma::conditions(kernel, gap_sign))));
 }
 
 /// Known facts by (N, r, p, sign d), each computed once.
@@ -45,12 +45,14 @@ public:
         const bool energies = said.energy_least || said.energy_attained || said.energy_bound;
         if (said.claim == Claim::trivial) {
             if (nsma::kernel_dimension(said.pattern) != 0) return "trivial";
+            if (said.kind) return "a kind of a trivial kernel";
             return energies ? "an energy of a trivial kernel" : "";
         }
         const auto& proof = of(said.pattern, said.gap_sign);
         const auto& known = proof.certificate;
         if (!proof.verdict_proved) return "nothing known";
         if (said.claim != known.claim) return "emptiness";
+        if (said.kind != known.kind) return "kind";
         if (said.claim == Claim::empty || said.gap_sign == 0) return energies ? "an energy where there is none" : "";
         if (said.energy_least != known.energy_least) return "energy_least";
         if (!proof.exact_greatest()) return "greatest energy unknown";

@@ -34,7 +34,6 @@ Study study(const nsma::Scene& scene, const std::vector<double>& amounts = {0, 0
     Study result;
     nsma::SensitivityRequest request;
     request.solver.solvers = nsma::SolverChoice::nlopt;
-    request.solver.bound_nodes = 0;
     request.amounts = amounts;
     result.summary = nsma::sensitivity(scene, request, result.records, [] { return true; });
     return result;

@@ -34,7 +34,6 @@ struct Recorder : nsma::SensitivitySink {
 nsma::SensitivityRequest quick() {
     nsma::SensitivityRequest request;
     request.solver.solvers = nsma::SolverChoice::nlopt;
-    request.solver.bound_nodes = 0;
     request.solver.starts = 4;
     request.amounts = {0, 0.01, 0.1};
     return request;

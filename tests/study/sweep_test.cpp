@@ -54,7 +54,6 @@ bool always() { return true; }
 /// Few relaxations: rows and counts are tested, not how good a bound is.
 nsma::OrbitSolverOptions quick() {
     nsma::OrbitSolverOptions options;
-    options.bound_nodes = 1;
     return options;
 }
 

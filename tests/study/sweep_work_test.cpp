@@ -24,7 +24,6 @@ TEST(SweepWorker, IpoptStartsFromTheOrbitBefore) {
     const Scene scene = one_pattern(Objective::least_shock);
     OrbitSolverOptions options;
     options.solvers = SolverChoice::ipopt;
-    options.bound_nodes = 0;
     SweepWorker worker(scene, options);
     const auto before = beta_of(worker.run(WorkUnit{0, 1, {}}));
     const WorkResult cold = worker.run(WorkUnit{0, 2, {}});

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "nsma/orbit/classification.hpp"
+#include "nsma/orbit/pattern_kind.hpp"
 #include "nsma/orbit/replay.hpp"
 #include "nsma/program/objective_name.hpp"
 
@@ -61,11 +62,10 @@ struct EnergyInterval {
 
 /// How far the kept orbit is known to be the best one. Objective values as reported.
 struct Optimality {
-    std::optional<double> lower_bound;  ///< proved in floating point (weak duality); absent: none
+    std::optional<double> lower_bound;  ///< proved: the closed form's own value, or weak duality in floating point; absent: none
     double gap = 0;          ///< (objective - lower_bound)/|objective|; meaningless without a bound
     bool global = false;     ///< gap within the agreement tolerance
     double kkt_residual = 0; ///< relative, from our own multipliers; 0 for closed forms
-    int nodes = 0;           ///< relaxations solved for the bound; 0: the Lagrangian was enough
 };
 
 /// The answer for one pattern, one objective and, unless the least-energy orbit is asked, one
@@ -75,6 +75,7 @@ struct OrbitAnswer {
     int gap_sign = 1;
     int kernel_dimension = 0;
     Verdict verdict = Verdict::failed;
+    std::optional<PatternKind> kind;       ///< of an admissible pattern
     std::string reason;                    ///< one line; empty when there is nothing to say
     EnergyInterval interval;
     bool verdict_proved = false;           ///< by an exact certificate, or by the replayed orbit

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "nsma/orbit/pattern.hpp"
+#include "nsma/orbit/pattern_kind.hpp"
 #include "nsma/program/exact.hpp"
 
 namespace nsma {
@@ -23,23 +23,10 @@ struct FormBound {
     RowCombination proof;
 };
 
-/// Node of a branch-and-bound proof that |beta|^2 <= bound over a box.
-struct BoundNode {
-    int split_column = -1;  ///< >= 0: the box is cut at `split_at`; children follow
-    Rational split_at;
-    int low = -1;           ///< index of the child with beta_column <= split_at
-    int high = -1;
-    RowCombination leaf;    ///< of a leaf: dual multipliers of its linear relaxation
-};
-
-/// Upper bound on |beta|^2 over the admissible set.
+/// Upper bound on |beta|^2 over the admissible set: columns in this order with partial sums s_k of w_c beta_c/delta,
+/// 0 = s_0, s_n = 1, and bounds of s_k (forms s_k, then -s_k, k = 1..n-1). A convex sum over steps is greatest where each
+/// s_k is at a bound, which dynamic programming decides.
 struct GreatestProof {
-    /// Box: for each live column its upper and its lower bound (of -beta), as forms.
-    std::vector<FormBound> box;
-    std::vector<BoundNode> tree;  ///< node 0 is the root; empty: the chain proves it
-    /// Chain: columns in this order with partial sums s_k of w_c beta_c/delta, 0 = s_0, s_n = 1;
-    /// bounds of s_k (forms s_k, then -s_k, k = 1..n-1). A convex sum over steps is greatest
-    /// where each s_k is at a bound, which dynamic programming decides.
     std::vector<int> chain;
     std::vector<FormBound> chain_bounds;
 };
@@ -50,16 +37,18 @@ struct Certificate {
     Pattern pattern;
     int gap_sign = 1;
     enum class Claim { trivial, empty, nonempty } claim = Claim::trivial;
+    /// Nonempty: `contact` where the point of least energy (closed gap: the ray) presses and leaves the wall, `free` where
+    /// no column has a contact step, `stuck` where none has a free one.
+    std::optional<PatternKind> kind;
 
     /// gap != 0: y of the projection rho of delta w on the cone of COND1 and COND3. rho = 0
     /// proves emptiness (a Farkas vector); else beta = rho/|rho|^2 is the least-energy point.
     RationalVector projection;
     /// Closed gap, empty: forms proved <= 0 that together leave only beta = 0.
     std::vector<FormBound> rest;
-    /// Closed gap, nonempty: a nonzero admissible direction. Otherwise a direction along which
-    /// the set is unbounded, if it is.
+    /// Closed gap, nonempty: a nonzero admissible direction.
     RationalVector ray;
-    /// gap != 0, bounded: an admissible point of the greatest energy known, and the bound.
+    /// gap != 0: an admissible point of the greatest energy known, and the bound.
     RationalVector greatest;
     GreatestProof greatest_proof;
 

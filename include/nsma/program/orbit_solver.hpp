@@ -15,13 +15,12 @@ struct PatternProblem {
     AdmissibleSet set;
     Proof proof;                        ///< empty when proofs were not asked for
     Verdict verdict = Verdict::failed;  ///< trivial, inadmissible, admissible or failed
+    std::optional<PatternKind> kind;    ///< of an admissible pattern
     EnergyInterval interval;            ///< exact where proved
 };
 
 struct PatternOptions {
-    AdmissibleOptions admissible;
-    bool prove = true;  ///< certify the verdict and the energy interval in exact arithmetic
-    ProveOptions proof;
+    bool prove = true;  ///< certify the verdict, the kind and the energy interval in exact arithmetic
 };
 
 /// Decides one pattern for a gap of the given sign. Throws std::invalid_argument on a bad
@@ -33,8 +32,8 @@ enum class SolverChoice {
     ipopt,
     nlopt,
     both,  ///< each against the other
-    /// Until an answer is proved the best: the least point of the sphere where it is admissible, a
-    /// polished segment point (above 48 unknowns Ipopt from there), NLopt, then both.
+    /// Until an answer is proved the best: the closed form where there is one (every simplex), else a polished segment
+    /// point, NLopt, then both.
     proof
 };
 
@@ -45,14 +44,11 @@ struct OrbitSolverOptions {
     double agreement_tolerance = 1e-6;  ///< relative difference of objectives that still agree
     double raw_violation = 1e-4;        ///< a raw answer further out is a failure of its solver
     double level_tolerance = 1e-15;     ///< relative; a level further outside the interval has no orbit
-    /// Relaxations spent on the bound of one answer, 0: none. Above 10 unknowns, where each takes
-    /// longer, an eighth of them, and shorter ones; above 48 none.
-    int bound_nodes = 32;
     SolverOptions solver;
 };
 
-/// Whether Ipopt is asked at most levels of a pattern of this kernel dimension, so that OrbitRequest::start saves time.
-[[nodiscard]] bool ipopt_is_usual(const OrbitSolverOptions& options, int kernel_dimension);
+/// Whether Ipopt is asked at most levels, so that OrbitRequest::start saves time.
+[[nodiscard]] bool ipopt_is_usual(const OrbitSolverOptions& options);
 
 struct OrbitRequest {
     std::optional<double> level;  ///< E/E_unit, > 0; absent: the least-energy orbit

@@ -56,12 +56,12 @@ private:
 };
 
 /// Writes patterns.csv, levels.csv, orbits.jsonl, timings.csv and the summary of a store into
-/// its folder, each complete or not at all; a part file never replaces complete results. `line`
-/// tells the user where they are.
+/// its folder, each complete or not at all; a part file never replaces complete results. `distinct` leaves answers out whose
+/// motion one before at the same level has under another label. `line` tells the user where they are.
 struct Exported {
     SweepSummary summary;
     std::string line;
 };
-[[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder);
+[[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder, bool distinct = false);
 
 }  // namespace nsma

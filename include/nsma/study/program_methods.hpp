@@ -26,7 +26,6 @@ struct ProgramMethod {
     double tolerance = 1e-8;
     bool polish = false;  ///< restore and polish the raw answer, and bound the objective
     bool warm = false;    ///< start at the optimum of a level 2 % away
-    bool lifted = false;  ///< Ipopt: with the tip displacements as unknowns (lifted_program.hpp)
 
     /// Brings its own start and poses the program itself.
     [[nodiscard]] bool whole() const { return kind == Kind::both || kind == Kind::proof; }
@@ -54,15 +53,10 @@ struct ProgramCase {
     bool proved = false;    ///< ... and proved to be the best
     Eigen::VectorXd best_x; ///< its unknowns
     double pose_seconds = 0;///< CPU, to pose the program and find a start: part of every run
-    /// Where the Lagrangian leaves a gap: CPU seconds of the bound by products and relaxations,
-    /// which every method needs before its answer is known to be the best, and whether it holds.
-    double bound_seconds = 0;
-    bool bound_holds = false;
     Eigen::VectorXd warm_x; ///< on this level, from the best orbit of a level 2 % away
 
 private:
     [[nodiscard]] double posing_seconds() const;
-    void bound_objective(double objective);
 };
 
 /// One run, judged.
@@ -92,7 +86,7 @@ public:
     [[nodiscard]] const ProgramMethod& method() const { return method_; }
 
 private:
-    [[nodiscard]] SolverOutcome call(const ProgramCase& on, const Program& posed, const Eigen::VectorXd& start);
+    [[nodiscard]] SolverOutcome call(const Program& posed, const Eigen::VectorXd& start);
 
     ProgramMethod method_;
     SolverOptions options_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@ struct PatternRecord {
     int gap_sign = 1;
     int kernel_dimension = 0;
     Verdict verdict = Verdict::failed;  ///< trivial, inadmissible, admissible or failed
+    std::optional<PatternKind> kind;    ///< of an admissible pattern
     EnergyInterval interval;
-    bool proved = false;                ///< the verdict and E_min by an exact certificate
+    bool proved = false;                ///< the verdict, the kind and E_min by an exact certificate
     std::string reason;                 ///< what decided, and what could not be proved
     double seconds = 0;
 };
@@ -25,11 +27,14 @@ struct SweepSummary {
     int trivial = 0;
     int inadmissible = 0;
     int admissible = 0;
+    std::array<int, pattern_kinds.size()> kinds{};  ///< admissible ones by PatternKind
+    int left = 0;          ///< admissible ones that were not solved: free and stuck ones, unless all kinds are asked
     int failed_patterns = 0;
     int unproved = 0;      ///< patterns whose verdict has no exact proof
     int open_bounds = 0;   ///< admissible patterns whose greatest energy is not exact
     int levels = 0;        ///< pattern-level pairs asked, closed-form least-energy orbits aside
     int solved = 0;        ///< admissible answers among them
+    int copies = 0;        ///< solved ones whose motion an earlier answer at the level has under another label
     int closed_form = 0;   ///< solved in closed form, or proved the best before a second solver was asked
     int below = 0;
     int above = 0;

@@ -15,14 +15,12 @@ namespace nsma {
 
 /// What stands behind the verdicts of a scan.
 enum class ScanMethod {
-    certified,  ///< closed form, or linear program and least norm; an exact certificate of every pattern
-    linear,     ///< the sieve in integers; what it leaves by linear program and least norm
+    certified,  ///< closed form with an exact certificate of every pattern
     integers    ///< the sieve alone
 };
 
 /// Scans every pattern of the scene in its order, trivial ones included, and hands each record
-/// on as it comes. `keep_going` is asked before each pattern. With `linear` a program that
-/// contradicts the sieve makes the record `failed`; the greatest energy is the sieve's.
+/// on as it comes. `keep_going` is asked before each pattern.
 void scan(const Scene& scene, const std::function<void(const PatternRecord&)>& record,
           const std::function<bool()>& keep_going, ScanMethod method = ScanMethod::certified);
 

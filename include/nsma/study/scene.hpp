@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "nsma/orbit/pattern.hpp"
+#include "nsma/orbit/pattern_kind.hpp"
 #include "nsma/program/objective_name.hpp"
 #include "nsma/wave/bar.hpp"
 #include "nsma/wave/mesh.hpp"
@@ -35,10 +35,16 @@ struct Scene {
     Bar bar;
     Mesh mesh;
     PatternSelection patterns;
+    bool all_kinds = false;      ///< solve free and stuck patterns as well as contact motions
     std::vector<double> levels;  ///< energy ratios E/E_g, joules for a closed gap; all > 0
     Objective objective = Objective::least_shock;
     std::string text;  ///< the scene file as read; empty for a scene made in code
 };
+
+/// Whether a pattern of this kind is solved; of other patterns only the verdict is given.
+[[nodiscard]] inline bool is_solved(bool all_kinds, const std::optional<PatternKind>& kind) {
+    return kind && (all_kinds || *kind == PatternKind::contact);
+}
 
 /// The patterns of a scene on its mesh, those of trivial kernel included, ordered by n_T then r
 /// (a list keeps its order).

@@ -94,6 +94,7 @@ struct CurveRecord {
 struct AblationRecord {
     Pattern pattern;
     int kernel_dimension = 0;
+    std::optional<PatternKind> kind;  ///< of the motions of the kernel, admissible or not; absent for a trivial one
     std::array<bool, 8> survives{};
 };
 
@@ -116,6 +117,7 @@ struct SensitivityRequest {
 
 struct SensitivitySummary {
     int patterns = 0, admissible = 0, optima = 0;
+    int left = 0;                   ///< admissible, but no contact motion: only its ablation
     int nondegenerate = 0, tied = 0, refused = 0;
     int failed = 0;                 ///< admissible by verdict, yet no orbit was found
     double worst_euler = 0;         ///< relative

@@ -77,6 +77,7 @@ private:
     [[nodiscard]] std::optional<WorkUnit> help(int worker);
 
     OrbitSolverOptions options_;
+    bool all_kinds_ = false;
     bool nearest_ = false;
     int first_place_ = 0;
     int last_place_ = 0;

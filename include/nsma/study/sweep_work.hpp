@@ -46,7 +46,7 @@ private:
 
 /// Adds a record to the counts; `asked` is false for the least-energy orbit, which counts only
 /// when it failed or its replay is the worst.
-void count(SweepSummary& summary, const PatternRecord& record);
+void count(SweepSummary& summary, const PatternRecord& record, bool all_kinds);
 void count(SweepSummary& summary, const OrbitAnswer& answer, bool asked);
 
 }  // namespace nsma
