@@ -112,7 +112,10 @@ private:
     }
 
     void find() {
-        if (request_.objective == Objective::nearest && !set_reference()) return;
+        if (request_.objective == Objective::nearest) {
+            if (!set_reference()) return;
+            answer_.reference = goal_.reference;
+        }
         if (end_of_interval()) return;
         const std::optional<Candidate> known = best_known();
         if (known && options_.solvers == SolverChoice::proof) return take_known({*known});

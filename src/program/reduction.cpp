@@ -213,7 +213,7 @@ bool Reduction::has_free_variables() const {
 Eigen::VectorXd Reduction::beta(const Eigen::VectorXd& gamma) const {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(kernel_dimension);
     for (std::size_t j = 0; j < column.size(); ++j) {
-        result[column[j]] = flip[j] * gamma[static_cast<Eigen::Index>(j)];
+        result[column[j]] = flip[j] * gamma[static_cast<Eigen::Index>(j)] + 0.0;  // no negative zero
     }
     return result;
 }

@@ -238,6 +238,11 @@ RelaxedProgram relaxed_program(const RelaxedSet& set, Objective objective, doubl
                 ++result.peak_rows;
             }
         }
+        if (result.peak_rows == 0) {  // no contact step carries a wave: no force, rather than one below zero
+            entries.emplace_back(static_cast<int>(values.size()), m, -1.0);
+            values.push_back(0.0);
+            ++result.peak_rows;
+        }
     }
     const bool banded = shift.band > 0 && result.contact_norm > 0;
     if (banded) {

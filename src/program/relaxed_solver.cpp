@@ -6,6 +6,7 @@
 
 #include <Eigen/QR>
 
+#include "nsma/program/admissible_set.hpp"
 #include "nsma/program/linear_program.hpp"
 #include "nsma/program/orbit_program.hpp"
 
@@ -17,6 +18,8 @@ constexpr double activity = 1e-7;
 // The rays and nonzero points sought lie in a unit box over small integer rows.
 constexpr double direction_tolerance = 1e-7;
 constexpr int climb_limit = 50;
+// Vertices of one energy differ by the rounding of sums of small integers.
+constexpr double tie_tolerance = 1e-12;
 
 // The linear rows of a program without bounds on its unknowns, over x = plus - minus with both
 // >= 0: CLP has called points optimal that were not, or cycled, where every unknown was free.
@@ -154,10 +157,13 @@ private:
     std::vector<Eigen::VectorXd> found_;
 };
 
-std::vector<Eigen::VectorXd> climb_all(const RelaxedProgram& form, const Eigen::VectorXd& from) {
+// `known`: where to climb from beside fixed directions.
+std::vector<Eigen::VectorXd> climb_all(const RelaxedProgram& form, const std::vector<Eigen::VectorXd>& known) {
     const auto n = form.program.variables();
     Climber climber(form);
-    if (from.squaredNorm() > 0) climber.climb(from);
+    for (const auto& from : known) {
+        if (from.squaredNorm() > 0) climber.climb(from);
+    }
     for (Eigen::Index j = 0; j < n; ++j) {
         for (const double side : {1.0, -1.0}) {
             Eigen::VectorXd direction = Eigen::VectorXd::Zero(n);
@@ -213,7 +219,14 @@ RelaxedInterval relaxed_interval(const RelaxedSet& set, const Shift& shift, bool
     result.ray = recession(form);
     result.unbounded = result.ray.size() > 0;
     if (!result.unbounded) {
-        result.vertices = climb_all(form, least.x);
+        // Without a relaxation every vertex of the greatest energy is known; a relaxation may raise any of them.
+        std::vector<Eigen::VectorXd> known{least.x};
+        const AdmissibleSet tight = admissible_set(reduce(conditions(set.kernel, set.gap_sign)));
+        for (const auto& vertex : tight.vertices) {
+            if (tight.energy(vertex) < tight.energy(tight.vertices.front()) * (1 - tie_tolerance)) break;
+            known.push_back(tight.reduction.beta(vertex) / form.scale);
+        }
+        result.vertices = climb_all(form, known);
         if (result.vertices.empty()) result.vertices = {result.least_point};
         result.greatest = std::max(result.least, set.energy(result.vertices.front()));
         result.empty = rest && set.energy(result.vertices.front()) <= 1e-12 * set.energy_factor;

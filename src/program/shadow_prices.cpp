@@ -5,12 +5,15 @@
 
 #include "nsma/program/relaxed_solver.hpp"
 #include "optimum_analysis.hpp"
+#include "nsma/program/tied_optima.hpp"
 
 namespace nsma {
 namespace {
 
 // The two sides of a derivative that agree to this are one number; multipliers carry 1e-9.
 constexpr double side_tolerance = 1e-8;
+// Tied optima share their objective to the rounding of two polishes.
+constexpr double tie_tolerance = 1e-9;
 
 Slope from_sides(const Side& right, const Side& left) {
     Slope slope;
@@ -68,12 +71,23 @@ OptimumSensitivity::OptimumSensitivity(const RelaxedSet& set, Objective objectiv
     };
     add(beta);
     std::vector<Eigen::VectorXd> others = ties;
-    if (objective != Objective::nearest) {
-        others.push_back(time_reversed(set.kernel, branches_.front()->beta));
-        for (const auto& tie : ties) others.push_back(time_reversed(set.kernel, tie));
+    // The least energy is convex and has one point; of the greatest all vertices are given.
+    if (!is_extreme(objective)) {
+        for (const auto& one : {std::vector{branches_.front()->beta}, ties}) {
+            for (const auto& point : one) {
+                TiedOptima tied = tied_optima(set, objective, point, reference);
+                if (!tied.refusal.empty()) too_many_ = tied.refusal;
+                others.insert(others.end(), tied.others.begin(), tied.others.end());
+            }
+        }
     }
+    const double value = branches_.front()->value;
     for (const auto& other : others) {
-        if (!known(other)) add(other);
+        if (known(other)) continue;
+        add(other);
+        // A copy that its own polish left for a better or a worse orbit is none.
+        const double off = std::abs(branches_.back()->value - value);
+        if (branches_.back()->refusal.empty() && off > tie_tolerance * (std::abs(value) + branches_.back()->form.objective_unit)) branches_.pop_back();
     }
 }
 
@@ -81,10 +95,12 @@ OptimumSensitivity::~OptimumSensitivity() = default;
 OptimumSensitivity::OptimumSensitivity(OptimumSensitivity&&) noexcept = default;
 OptimumSensitivity& OptimumSensitivity::operator=(OptimumSensitivity&&) noexcept = default;
 
-const std::string& OptimumSensitivity::refusal() const { return branches_.front()->refusal; }
+const std::string& OptimumSensitivity::refusal() const {
+    return branches_.front()->refusal.empty() ? too_many_ : branches_.front()->refusal;
+}
 double OptimumSensitivity::value() const { return branches_.front()->value; }
 const Eigen::VectorXd& OptimumSensitivity::beta() const { return branches_.front()->beta; }
-bool OptimumSensitivity::tied() const { return branches_.size() > 1; }
+int OptimumSensitivity::tied() const { return static_cast<int>(branches_.size()); }
 std::optional<double> OptimumSensitivity::kkt_residual() const { return branches_.front()->kkt_residual; }
 std::optional<double> OptimumSensitivity::euler_defect() const { return branches_.front()->euler_defect(); }
 
@@ -103,6 +119,7 @@ std::vector<int> OptimumSensitivity::active_rows() const {
 }
 
 Slope OptimumSensitivity::slope(const Shift& direction) const {
+    if (!refusal().empty()) return {Slope::Kind::refused, {}, {}, {}, {}, refusal()};
     // The best branch on each side; one that is refused refuses all.
     const bool maximum = branches_.front()->objective == Objective::max_energy;
     const auto best = [&](const Shift& way) {

@@ -5,6 +5,7 @@
 
 #include "nsma/orbit/backbone.hpp"
 #include "nsma/program/relaxed_solver.hpp"
+#include "nsma/program/tied_optima.hpp"
 
 namespace nsma {
 namespace {
@@ -73,14 +74,13 @@ private:
         if (problem.verdict == Verdict::trivial || problem.verdict == Verdict::failed) return;
         const RelaxedSet set = relaxed_set(problem.kernel, gap_sign_);
         const bool admissible = problem.verdict == Verdict::admissible;
-        std::optional<double> curve_level;
         if (admissible) ++summary_.admissible;
         if (admissible && !request_.pattern && !is_solved(scene_.all_kinds, problem.kind)) {
             ++summary_.left;
             return;
         }
         if (admissible) {
-            curve_level = optima(problem);
+            optima(problem);
             if (gap_sign_ != 0) {
                 IntervalRecord record = interval_record(set);
                 compare_frequency(record, gap_sign_);
@@ -92,11 +92,13 @@ private:
                 sink_.interval(record);
             }
         }
-        if (gap_sign_ != 0) curves(set, admissible, curve_level);
+        if (gap_sign_ != 0) curves(set, admissible);
     }
 
-    // Every level asked; returns the level of the relaxation curves: the middle one solved.
-    std::optional<double> optima(const PatternProblem& problem) {
+    // Every level asked. Relaxation curves are drawn at the middle one solved.
+    void optima(const PatternProblem& problem) {
+        solved_.clear();
+        solved_levels_.clear();
         std::vector<std::optional<double>> levels;
         const bool extreme = is_extreme(scene_.objective);
         if (gap_sign_ != 0) levels.emplace_back();
@@ -106,38 +108,31 @@ private:
             levels.insert(levels.end(), scene_.levels.begin(), scene_.levels.end());
         }
         OrbitRequest wanted;
-        wanted.objective = scene_.objective;
-        std::vector<double> solved;
+        Eigen::VectorXd before;  // window of the orbit before, which `nearest` stays near, as in a sweep
         for (const auto& level : levels) {
             if (!keep_going_()) break;
             wanted.level = level;
-            if (!level) wanted.objective = Objective::min_energy;
-            else wanted.objective = scene_.objective;
+            wanted.objective = level ? scene_.objective : Objective::min_energy;
+            wanted.reference = wanted.objective == Objective::nearest ? before : Eigen::VectorXd();
             const OrbitAnswer answer = solver_.solve(scene_.bar, problem, wanted);
             if (answer.verdict == Verdict::failed) ++summary_.failed;
             if (!answer.orbit) continue;
-            if (level) solved.push_back(*level);
-            const Eigen::VectorXd reference = level ? reference_ : Eigen::VectorXd();
-            if (level && scene_.objective == Objective::nearest && reference.size() == 0) {
-                // `nearest` starts from the least-energy orbit; a closed gap has none to refer to.
-                reference_ = reference_window(*answer.orbit);
-                continue;
+            if (level) {
+                solved_.push_back(answer.orbit->beta);
+                solved_levels_.push_back(*level);
             }
-            OptimumRecord record = optimum_record(*answer.orbit, gap_sign_, scene_.objective, level, reference);
-            record.global = !level || (answer.optimality && answer.optimality->global);
-            if (scene_.objective == Objective::nearest) reference_ = reference_window(*answer.orbit);
+            OptimumRecord record = optimum_record(*answer.orbit, gap_sign_, scene_.objective, level, answer.reference);
+            record.global = answer.optimality && answer.optimality->global;
+            if (level && scene_.objective == Objective::nearest) before = reference_window(*answer.orbit);
             count(record);
             sink_.optimum(record);
         }
-        reference_.resize(0);
-        if (solved.empty()) return std::nullopt;
-        return solved[solved.size() / 2];
     }
 
     void count(const OptimumRecord& record) {
         ++summary_.optima;
         if (record.nondegenerate) ++summary_.nondegenerate;
-        if (record.tied) ++summary_.tied;
+        if (record.tied > 1) ++summary_.tied;
         if (!record.refusal.empty()) {
             ++summary_.refused;
             return;
@@ -146,9 +141,17 @@ private:
         if (record.kkt_residual) summary_.worst_kkt = std::max(summary_.worst_kkt, *record.kkt_residual);
     }
 
-    void curves(const RelaxedSet& set, bool admissible, std::optional<double> level) {
+    void curves(const RelaxedSet& set, bool admissible) {
+        std::optional<double> level;
+        std::vector<Eigen::VectorXd> optima;  // the best orbit without a relaxation, and those that tie with it
+        if (!solved_.empty() && admissible) {
+            const std::size_t middle = solved_.size() / 2;
+            level = solved_levels_[middle];
+            optima = tied_optima(set, scene_.objective, solved_[middle]).others;
+            optima.push_back(solved_[middle]);
+        }
         for (const Study& study : studies()) {
-            std::vector<Eigen::VectorXd> near;
+            std::vector<Eigen::VectorXd> near = optima;
             for (const double amount : request_.amounts) {
                 if (!keep_going_()) return;
                 CurveRecord record;
@@ -176,7 +179,8 @@ private:
                     const RelaxedOptimum best = relaxed_optimum(set, interval, wanted);
                     if (best.status == RelaxedOptimum::Status::optimal) {
                         record.objective = best.objective;
-                        near = {best.beta};
+                        near = optima;
+                        near.push_back(best.beta);
                     }
                 }
                 sink_.curve(record);
@@ -190,7 +194,8 @@ private:
     const std::function<bool()>& keep_going_;
     OrbitSolver solver_;
     int gap_sign_;
-    Eigen::VectorXd reference_;
+    std::vector<Eigen::VectorXd> solved_;  // beta, of the pattern in hand
+    std::vector<double> solved_levels_;
     SensitivitySummary summary_;
     long done_ = 0;
     long total_ = 0;

@@ -90,7 +90,7 @@ OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objecti
         price.steps = row.steps;
         price.active = std::find(active.begin(), active.end(), static_cast<int>(i)) != active.end();
         // A row inactive here may hold the orbit tied with this one.
-        if (price.active || record.tied || !record.refusal.empty()) {
+        if (price.active || record.tied > 1 || !record.refusal.empty()) {
             price.slope = optimum.slope(direction_of(set, price.parameter, static_cast<int>(i)));
         } else {
             price.slope.kind = Slope::Kind::two_sided;

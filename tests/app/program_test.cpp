@@ -267,16 +267,19 @@ TEST_F(Program, ScanCsvAndPublicCounts) {
     const auto lines = lines_of(result.out);
     ASSERT_EQ(lines.size(), 1U + 209U);
     EXPECT_EQ(lines[0], "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,"
-                        "verdict,energy_ratio_min,energy_ratio_max");
+                        "verdict,energy_ratio_min,energy_ratio_max,kind");
     int admissible = 0;
     int inadmissible = 0;
+    int contact = 0;
     for (std::size_t i = 1; i < lines.size(); ++i) {
-        EXPECT_EQ(std::count(lines[i].begin(), lines[i].end(), ','), 9);
+        EXPECT_EQ(std::count(lines[i].begin(), lines[i].end(), ','), 10);
+        if (lines[i].ends_with(",contact")) ++contact;
         if (lines[i].find(",admissible,") != std::string::npos) ++admissible;
         if (lines[i].find(",inadmissible,,") != std::string::npos) ++inadmissible;
     }
     EXPECT_EQ(admissible, 35);
     EXPECT_EQ(inadmissible, 209 - 35);
+    EXPECT_EQ(contact, 18);
 }
 
 TEST_F(Program, ScanWithNothingAdmissibleIsThree) {
@@ -430,7 +433,7 @@ TEST_F(Program, UnwritableOutputIsOneLine) {
 TEST_F(Program, SweepAgainIsTheSameToTheByte) {
     const std::string scene = write("tiny.toml", scene_text("1.0", "4", "period = [3.0, 4.0]", "[1.6, 6.0]"));
     const fs::path out = folder_ / "out" / "deeper";
-    const Result first = run({"sweep", scene, "--out", out.string(), "--quiet", "--bound-nodes", "1"});
+    const Result first = run({"sweep", scene, "--out", out.string(), "--quiet"});
     EXPECT_EQ(first.exit_code, 0) << first.err << first.out;
     EXPECT_EQ(first.err, "");
     const std::vector<std::string> stable{"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl"};
@@ -449,9 +452,9 @@ TEST_F(Program, SweepAgainIsTheSameToTheByte) {
     const json summary = json::parse(contents(out / "summary.json"));
     EXPECT_EQ(summary["patterns"], 11 + 12 + 13 + 14 + 15);  // n_T = 12..16
     EXPECT_EQ(summary["interrupted"], false);
-    EXPECT_EQ(summary["levels"].get<int>(), 2 * summary["admissible"].get<int>());
+    EXPECT_EQ(summary["levels"].get<int>(), 2 * summary["kinds"]["contact"].get<int>());
 
-    EXPECT_EQ(run({"sweep", scene, "--out", out.string(), "--quiet", "--bound-nodes", "1"}).exit_code, 0);
+    EXPECT_EQ(run({"sweep", scene, "--out", out.string(), "--quiet"}).exit_code, 0);
     for (std::size_t i = 0; i < stable.size(); ++i) EXPECT_EQ(contents(out / stable[i]), before[i]) << stable[i];
 
     // Another scene may not touch it.
@@ -476,6 +479,63 @@ TEST_F(Program, SweepAgainIsTheSameToTheByte) {
     EXPECT_GE(pictures, 2);
 }
 
+TEST_F(Program, FreeAndStuckPatternsAreLeftUnlessAskedFor) {
+    const std::string scene = write("six.toml", scene_text("1.0", "6", "period = [0.0, 4.0]", "[1.6, 12.0]"));
+    const auto sweep = [&](const char* folder, std::vector<std::string> more) {
+        std::vector<std::string> words{"sweep", scene, "--out", (folder_ / folder).string(), "--quiet"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run(words);
+    };
+    const auto rows_of = [&](const char* folder) {
+        std::vector<std::string> rows;
+        for (const auto& line : lines_of(contents(folder_ / folder / "levels.csv"))) {
+            if (line[0] != '#' && line.find(",admissible,") != std::string::npos) rows.push_back(line);
+        }
+        return rows;
+    };
+    EXPECT_EQ(sweep("contact", {}).exit_code, 0);
+    EXPECT_EQ(sweep("all", {"--all-kinds"}).exit_code % 4, 0);
+    EXPECT_EQ(sweep("distinct", {"--distinct"}).exit_code, 0);
+    const json summary = json::parse(contents(folder_ / "contact" / "summary.json"));
+    EXPECT_EQ(summary["kinds"], (json{{"contact", 18}, {"free", 17}, {"stuck", 0}}));
+    EXPECT_EQ(summary["left"], 17);
+    EXPECT_EQ(summary["levels"], 2 * 18);
+    EXPECT_EQ(summary["global"], summary["solved"]);
+    const json all = json::parse(contents(folder_ / "all" / "summary.json"));
+    EXPECT_EQ(all["left"], 0);
+    EXPECT_EQ(all["levels"], 2 * 35);
+    // The verdicts are the same, kinds and all; the contact motions too.
+    EXPECT_EQ(contents(folder_ / "all" / "patterns.csv"), contents(folder_ / "contact" / "patterns.csv"));
+    std::vector<std::string> contact_rows;
+    for (const auto& row : rows_of("all")) {
+        if (row.find(",contact,") != std::string::npos) contact_rows.push_back(row);
+        EXPECT_TRUE(row.find(",contact,false,") != std::string::npos || row.find(",free,true,") != std::string::npos) << row;
+    }
+    EXPECT_EQ(contact_rows, rows_of("contact"));
+    // One row a motion: the copies, and nothing but them, are left out.
+    EXPECT_GT(summary["copies"].get<int>(), 0);
+    EXPECT_LT(rows_of("distinct").size(), rows_of("contact").size());
+    for (const auto& row : rows_of("distinct")) EXPECT_NE(contents(folder_ / "contact" / "levels.csv").find(row), std::string::npos);
+    EXPECT_EQ(run({"export", (folder_ / "contact").string(), "--distinct"}).exit_code, 0);
+    EXPECT_EQ(contents(folder_ / "contact" / "levels.csv"), contents(folder_ / "distinct" / "levels.csv"));
+
+    // The scene may ask as well; another choice is another sweep.
+    const std::string asking = write("asking.toml", scene_text("1.0", "6", "period = [0.0, 4.0]\nkinds = \"all\"", "[1.6, 12.0]"));
+    EXPECT_EQ(run({"sweep", asking, "--out", (folder_ / "asked").string(), "--quiet"}).exit_code % 4, 0);
+    EXPECT_EQ(rows_of("asked"), rows_of("all"));
+    expect_refused({"sweep", scene, "--out", (folder_ / "all").string(), "--quiet", "--resume"}, "kinds");
+    const std::string wrong = write("wrong.toml", scene_text("1.0", "6", "period = [0.0, 4.0]\nkinds = \"some\"", "[1.6]"));
+    expect_refused({"scan", wrong}, "kinds");
+    // Only a free pattern: a verdict, no orbit, and a word on how to get it.
+    const std::string grazing = write("grazing.toml", scene_text("1.0", "6", "list = [[23, 1]]", "[1.6]"));
+    const Result left = run({"sweep", grazing, "--out", (folder_ / "left").string(), "--quiet"});
+    EXPECT_EQ(left.exit_code, 3);
+    EXPECT_NE(left.err.find("nsma: no pattern of the scene is a contact motion; --all-kinds solves the other 1\n"), std::string::npos) << left.err;
+    const Result one = run({"orbit", scene_, "--free", "23", "--contact", "1"});
+    EXPECT_NE(one.out.find("kind          free: "), std::string::npos) << one.out;
+    EXPECT_LT(one.out.find("kind          free: "), one.out.find("verdict"));
+}
+
 TEST_F(Program, SweepWhereNothingIsAdmissibleIsThree) {
     const std::string scene = write("above.toml", scene_text("1.0", "6", "list = [[16, 4]]", "[1e6]"));
     const Result result = run({"sweep", scene, "--out", (folder_ / "out").string(), "--quiet"});
@@ -488,7 +548,7 @@ TEST_F(Program, InterruptedSweepKeepsReadableRows) {
     for (int i = 2; i < 400; ++i) levels += ", " + std::to_string(1 + 0.1 * i);
     const std::string scene = write("long.toml", scene_text("1.0", "12", "period = [0.0, 4.0]", levels + "]"));
     const fs::path out = folder_ / "out";
-    const pid_t child = start({"sweep", scene, "--out", out.string(), "--quiet", "--bound-nodes", "1"});
+    const pid_t child = start({"sweep", scene, "--out", out.string(), "--quiet", "--all-kinds", "--solver", "both"});
     // Wait for a few rows, a minute at most.
     for (int i = 0; i < 1200; ++i) {
         std::error_code code;  // the store's journal grows with every result

@@ -87,8 +87,8 @@ protected:
 
     static std::vector<std::string> sweep(const std::string& scene, const fs::path& out, bool resume = false,
                                           const std::string& solver = "proof") {
-        // Of the bound on the optimum only a little: what is tested is what becomes of the rows.
-        std::vector<std::string> words{NSMA_PROGRAM, "sweep", scene, "--out", out.string(), "--quiet", "--bound-nodes", "1",
+        // Free patterns too, which take solvers some time.
+        std::vector<std::string> words{NSMA_PROGRAM, "sweep", scene, "--out", out.string(), "--quiet", "--all-kinds",
                                        "--solver", solver};
         if (resume) words.emplace_back("--resume");
         return words;

@@ -55,10 +55,13 @@ TEST(OrbitJson, HasEveryAgreedField) {
                             "energy_min_exact",
                             "energy_max_exact",
                             "energy_bound",
-                            "optimality"}) {
+                            "optimality",
+                            "kind",
+                            "forceless",
+                            "same_motion_as"}) {
         EXPECT_TRUE(json.contains(key)) << key;
     }
-    EXPECT_EQ(json.size(), 28U);
+    EXPECT_EQ(json.size(), 31U);
     EXPECT_THAT(keys(json["objective"]), testing::ElementsAre("name", "value"));
     EXPECT_THAT(keys(json["violations"]),
                 testing::ElementsAre("periodicity", "cond1", "cond2", "cond3", "energy"));
@@ -94,7 +97,7 @@ TEST(OrbitJson, AnswersWithoutAnOrbitKeepTheFields) {
     answer.level = 1.0;
     answer.reason = "level 1 < 25";
     const Json json = Json::parse(orbit_json(answer, Bar{}));
-    EXPECT_EQ(json.size(), 28U);
+    EXPECT_EQ(json.size(), 31U);
     EXPECT_EQ(json["verdict"], "below");
     EXPECT_TRUE(json["energy_ratio"].is_null());
     EXPECT_TRUE(json["violations"]["periodicity"].is_null());

@@ -40,6 +40,7 @@ inline OrbitAnswer least_energy_answer(const Bar& bar, const Pattern& pattern) {
     answer.gap_sign = bar.gap_sign();
     answer.kernel_dimension = kernel.dimension();
     answer.verdict = Verdict::admissible;
+    answer.kind = pattern_kind(pattern);
     answer.method = "closed-form";
     answer.orbit = make_orbit(bar, kernel, bar.gap_sign() * row / row.squaredNorm());
     answer.energy = energy_ratio(*answer.orbit);
@@ -56,6 +57,7 @@ inline PatternRecord record_of(const OrbitAnswer& answer) {
     record.gap_sign = answer.gap_sign;
     record.kernel_dimension = answer.kernel_dimension;
     record.verdict = answer.verdict;
+    record.kind = answer.kind;
     record.interval = answer.interval;
     return record;
 }

@@ -18,6 +18,7 @@ PatternRecord admissible_record() {
     record.pattern = {6, 16, 4};
     record.kernel_dimension = 4;
     record.verdict = Verdict::admissible;
+    record.kind = PatternKind::contact;
     record.interval.least = 9.0;
     record.interval.greatest = 36.0;
     return record;
@@ -26,8 +27,8 @@ PatternRecord admissible_record() {
 TEST(Tables, ScanHasTheAgreedColumns) {
     EXPECT_EQ(scan_csv_header(),
               "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,"
-              "verdict,energy_ratio_min,energy_ratio_max");
-    EXPECT_EQ(scan_csv_row(Bar{}, admissible_record()), "6,1,16,4,20,4,1.2,admissible,9,36");
+              "verdict,energy_ratio_min,energy_ratio_max,kind");
+    EXPECT_EQ(scan_csv_row(Bar{}, admissible_record()), "6,1,16,4,20,4,1.2,admissible,9,36,contact");
 }
 
 TEST(Tables, NoValueIsAnEmptyField) {
@@ -35,10 +36,11 @@ TEST(Tables, NoValueIsAnEmptyField) {
     record.interval = nsma::EnergyInterval{};
     record.interval.least = 9.0;
     record.interval.unbounded = true;
-    EXPECT_EQ(scan_csv_row(Bar{}, record), "6,1,16,4,20,4,1.2,admissible,9,");
+    EXPECT_EQ(scan_csv_row(Bar{}, record), "6,1,16,4,20,4,1.2,admissible,9,,contact");
     record.verdict = Verdict::inadmissible;
+    record.kind.reset();
     record.interval = {};
-    EXPECT_EQ(scan_csv_row(Bar{}, record), "6,1,16,4,20,4,1.2,inadmissible,,");
+    EXPECT_EQ(scan_csv_row(Bar{}, record), "6,1,16,4,20,4,1.2,inadmissible,,,");
 }
 
 TEST(Tables, AClosedGapHasNoRatios) {
@@ -46,8 +48,8 @@ TEST(Tables, AClosedGapHasNoRatios) {
     bar.gap = 0.0;
     PatternRecord record = admissible_record();
     record.gap_sign = 0;
-    EXPECT_EQ(scan_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,");
-    EXPECT_EQ(patterns_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,,9,36,false,false,,,,");
+    EXPECT_EQ(scan_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,,contact");
+    EXPECT_EQ(patterns_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,,contact,9,36,false,false,,,,");
 }
 
 TEST(Tables, EveryRowHasAsManyFieldsAsItsHeader) {
@@ -61,7 +63,7 @@ TEST(Tables, EveryRowHasAsManyFieldsAsItsHeader) {
     answer.reason = "a, b \"c\"\nd";
     const std::string row = levels_csv_row(bar, answer);
     EXPECT_EQ(fields(row), fields(levels_csv_header()));
-    EXPECT_THAT(row, testing::EndsWith(",Solve_Succeeded,1.5,XTOL_REACHED,,false,,,,"));
+    EXPECT_THAT(row, testing::EndsWith(",Solve_Succeeded,1.5,XTOL_REACHED,,false,,,,,contact,false,,,,"));
     EXPECT_EQ(csv_fields(row)[10], "a, b \"c\" d");
     const auto timings = timings_csv_rows(answer);
     ASSERT_EQ(timings.size(), 3U);

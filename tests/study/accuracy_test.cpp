@@ -72,7 +72,7 @@ TEST(Accuracy, QuickRunEndToEnd) {
         EXPECT_EQ(record.succeeded, record.runs);
         EXPECT_LE(record.error, 1e-9);
     }
-    EXPECT_EQ(methods, (std::set<std::string>{"both solvers", "default", "segment", "Ipopt", "Ipopt lifted", "SLSQP", "AUGLAG+LBFGS",
+    EXPECT_EQ(methods, (std::set<std::string>{"both solvers", "default", "segment", "Ipopt", "SLSQP", "AUGLAG+LBFGS",
                                               "AUGLAG+SLSQP", "COBYLA", "ISRES"}));
     for (const auto& record : seen.kernels) {
         // Divide and conquer loses vectors of repeated singular values in some versions of Eigen.

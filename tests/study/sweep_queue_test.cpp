@@ -35,6 +35,7 @@ WorkResult made_up(const WorkUnit& unit) {
     WorkResult result{unit.pattern, unit.place, std::nullopt, std::nullopt};
     if (unit.place < 0) {
         result.record.emplace().verdict = unit.pattern % 3 == 0 ? Verdict::admissible : Verdict::inadmissible;
+        if (unit.pattern % 3 == 0) result.record->kind = PatternKind::contact;
     } else {
         result.answer.emplace().verdict = Verdict::above;
         if (unit.place % 2 == 0) result.answer->orbit.emplace().beta = made_up_beta(unit.pattern, unit.place);
@@ -260,8 +261,8 @@ TEST(SweepQueue, GoesOnWhereAStoreEnds) {
 TEST(SweepQueue, NearestFollowsThePatternFromLevelToLevel) {
     Scene scene = scene_of(Objective::nearest);
     scene.mesh.cells = 6;
-    scene.patterns = ListSelection{{{23, 1}}};
-    scene.levels = {1.6, 2.0, 2.5};
+    scene.patterns = ListSelection{{{16, 4}}};
+    scene.levels = {12.0, 20.0, 30.0};
     SweepQueue queue(scene, {}, SweepQueue::Order::longest_first);
     SweepWorker worker(scene, {});
     SweepWorker other(scene, {});

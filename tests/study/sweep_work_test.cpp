@@ -1,5 +1,6 @@
 #include "nsma/study/sweep_work.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@ Scene one_pattern(Objective objective) {
     Scene scene;
     scene.mesh.cells = 8;
     scene.patterns = ListSelection{{{31, 1}}};
+    scene.all_kinds = true;  // a free pattern, whose levels a solver decides
     scene.levels = {3.0, 4.0, 300.0};
     scene.objective = objective;
     return scene;
@@ -41,9 +43,14 @@ TEST(SweepWorker, IpoptStartsFromTheOrbitBefore) {
 }
 
 TEST(SweepWorker, NearestStaysNearTheOrbitBefore) {
-    const Scene scene = one_pattern(Objective::nearest);
+    Scene scene = one_pattern(Objective::nearest);
+    scene.mesh.cells = 6;
+    scene.patterns = ListSelection{{{16, 4}}};  // a simplex of four classes with one sign
+    scene.levels = {20.0, 30.0};
     SweepWorker worker(scene, {});
-    const auto before = beta_of(worker.run(WorkUnit{0, 1, {}}));
+    auto before = beta_of(worker.run(WorkUnit{0, 1, {}}));
+    // From the least-energy orbit all vertices are as near; the one before was at another.
+    std::reverse(before.begin(), before.end());
     const WorkResult from_before = worker.run(WorkUnit{0, 2, before});
     const WorkResult from_least = worker.run(WorkUnit{0, 2, {}});
     const auto distance = [&](const WorkResult& result) {

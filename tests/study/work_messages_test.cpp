@@ -17,8 +17,9 @@ Scene scene_of(double gap, Objective objective) {
     Scene scene;
     scene.bar.gap = gap;
     scene.mesh.cells = 6;
-    scene.patterns = ListSelection{{{16, 4}, {23, 1}, {3, 3}, {11, 1}, {13, 1}}};
-    scene.levels = {0.5, 1.6, 12.0, 1e4};
+    scene.patterns = ListSelection{{{16, 4}, {23, 1}, {3, 3}, {11, 1}, {13, 1}, {4, 10}}};
+    scene.levels = {0.5, 1.6, 3.0, 12.0, 1e4};
+    scene.all_kinds = true;
     scene.objective = objective;
     return scene;
 }

@@ -83,6 +83,7 @@ struct OrbitAnswer {
     std::optional<double> level;           ///< the level asked, in energy units
     Objective objective = Objective::least_shock;
     std::optional<double> objective_value; ///< nondimensional, of the kept orbit
+    Eigen::VectorXd reference;             ///< `nearest`: the window it was measured against
     std::optional<double> objective_difference;  ///< relative gap between the two solvers
     std::string method;                    ///< "closed-form", "ipopt", "nlopt-slsqp", "segment"...
     std::optional<Orbit> orbit;            ///< present if and only if the verdict is admissible

@@ -44,7 +44,8 @@ class OptimumAnalysis;
 /// linear program where they are not unique. Where the level is an end of the energy interval
 /// that end's own derivative decides whether there is an orbit, and a projection on the critical
 /// cone gives the root of the square-root branch. What lies between `active` and `inactive` is
-/// neither, and refused. `set` must outlive this.
+/// neither, and refused. Where several optima tie (time shifts and reversals of an orbit that rests at the wall, permuted
+/// peaks) the right derivative is the least and the left one the greatest over all of them. `set` must outlive this.
 /// Source: J. F. Bonnans, A. Shapiro, SIAM Review 40 (1998) 228-264.
 class OptimumSensitivity {
 public:
@@ -55,7 +56,7 @@ public:
 
     /// `beta` is an optimum at `level` (absent for min_energy only). Throws std::invalid_argument
     /// on a wrong size, on max_energy with a level or a missing level. For max_energy (no level)
-    /// beta is a vertex; further vertices of the same energy go to `ties`.
+    /// beta is a vertex; `ties` are further optima of the same value, for max_energy all other vertices of it.
     OptimumSensitivity(const RelaxedSet& set, Objective objective, std::optional<double> level,
                        const Eigen::VectorXd& beta, const Options& options,
                        const Eigen::VectorXd& reference = {},
@@ -72,7 +73,7 @@ public:
     [[nodiscard]] double value() const;                  ///< objective, as reported
     [[nodiscard]] const Eigen::VectorXd& beta() const;   ///< polished
     [[nodiscard]] bool nondegenerate() const;  ///< independent active rows, positive multipliers
-    [[nodiscard]] bool tied() const;           ///< another optimum of the same value is known
+    [[nodiscard]] int tied() const;            ///< number of optima of this value, this one included
     [[nodiscard]] std::vector<int> active_rows() const;  ///< of the set
     /// Relative to 1 + |grad f|, scaled; absent where there are no multipliers.
     [[nodiscard]] std::optional<double> kkt_residual() const;
@@ -86,6 +87,7 @@ public:
 
 private:
     std::vector<std::unique_ptr<OptimumAnalysis>> branches_;  // the optimum, then its ties
+    std::string too_many_;                                    // why not all ties are there
 };
 
 }  // namespace nsma
