@@ -8,6 +8,9 @@ namespace {
 
 using Shape = AdmissibleSet::Shape;
 
+// Up to so many partial sums every vertex is kept.
+constexpr std::size_t all_sums = 6;
+
 // Steps between the partial sums, P_0 = 0 and P_n = 1, in units of -delta/c.
 Eigen::VectorXd steps_of(const std::vector<char>& high) {
     Eigen::VectorXd steps(static_cast<Eigen::Index>(high.size()) + 1);
@@ -34,6 +37,12 @@ std::vector<Eigen::VectorXd> chain_vertices(Eigen::Index n) {
         keep(high);
     }
     const auto greatest = steps.size();
+    if (inner <= all_sums) {
+        for (unsigned bits = 0; bits < (1U << inner); ++bits) {
+            for (std::size_t k = 0; k < inner; ++k) high[k] = static_cast<char>(bits >> k & 1U);
+            keep(high);
+        }
+    }
     for (const std::size_t run : {2U, 3U, 4U}) {
         for (std::size_t shift = 0; shift < 2 * run; ++shift) {
             for (std::size_t k = 0; k < inner; ++k) high[k] = static_cast<char>((k + shift) / run % 2 == 0);

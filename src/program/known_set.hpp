@@ -23,7 +23,7 @@ struct ChainRows {
 
 /// Decides a set of a known shape. A simplex has the vertices delta e_j/c. A chain has those with
 /// every P_k either 0 or -delta/c, 2^(n-1) of them: kept are all of the greatest energy (steps of alternating sign, one of
-/// them zero where n is even), the single steps, and those whose P_k changes after every 2, 3 or 4 columns.
+/// them zero where n is even), up to seven columns every one, the single steps, and those whose P_k changes after every 2, 3 or 4 columns.
 void decide_in_closed_form(AdmissibleSet& set);
 
 }  // namespace nsma

@@ -68,14 +68,15 @@ Eigen::VectorXd LevelPoints::mixture(int seed) const {
     return sum / total;
 }
 
+int LevelPoints::pieces() const {
+    if (set_.reduction.gap_sign == 0) return static_cast<int>(set_.vertices.size());
+    return static_cast<int>(std::count_if(set_.vertices.begin(), set_.vertices.end(), [this](const auto& vertex) { return set_.energy(vertex) > level_; }));
+}
+
 std::optional<Eigen::VectorXd> LevelPoints::start(int k) const {
-    if (k == 0) return reach(base_);
-    if (k == 1) {
-        for (auto vertex = set_.vertices.rbegin(); vertex != set_.vertices.rend(); ++vertex) {
-            if (set_.energy(*vertex) > level_) return reach(*vertex);
-        }
-    }
-    return reach(mixture(k));
+    // Vertices come with the greatest energy first.
+    if (k > 0 && k < pieces()) return reach(set_.vertices[static_cast<std::size_t>(k)]);
+    return reach(k == 0 ? base_ : mixture(k));
 }
 
 }  // namespace nsma

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -82,11 +84,24 @@ public:
         if (problem_.verdict == Verdict::admissible && level_verdict()) {
             answer_.reason.clear();
             find();
+            if (answer_.orbit && !proved_best(answer_)) say_open();
         }
         return std::move(answer_);
     }
 
 private:
+    // In words, what is not known of the orbit that was found.
+    void say_open() {
+        const auto& optimality = answer_.optimality;
+        std::string words = "not proved the best, no bound";
+        if (optimality && optimality->lower_bound) {
+            std::ostringstream text;
+            text << std::setprecision(2) << "not proved the best, gap " << 100 * optimality->gap << " %";
+            words = text.str();
+        }
+        answer_.reason += (answer_.reason.empty() ? "" : "; ") + words;
+    }
+
     // Sets below/above and returns false where the level is outside the interval.
     bool level_verdict() {
         if (!request_.level) {

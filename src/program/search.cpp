@@ -13,6 +13,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // of the starts is made, each of which costs as much as all of a small program.
 constexpr Eigen::Index slsqp_limit = 64;
 constexpr double bound_rounding = 1e-9;  // relative; a thousandth of what `global` allows
+constexpr int most_pieces = 64;
+
 // Number of the start that OrbitRequest::start gives.
 constexpr int warm_start = -1;
 
@@ -38,6 +40,8 @@ Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Patt
     if (request.level) level_.emplace(problem.set, *request.level);
     if (level_ && request.start.size() > 0) warm_ = level_->reach(problem.set.reduction.gamma(request.start));
     if (program_.program.variables() > slsqp_limit) starts_ = (starts_ + 3) / 4;
+    // The best orbit may lie in any piece of the level.
+    if (level_) starts_ = std::max(starts_, std::min(level_->pieces(), most_pieces));
     if (!known) return;
     unaided_.usable = true;
     unaided_.candidate = *known;
@@ -192,12 +196,18 @@ Best Search::found(const Polished& polished, const char* method) const {
 }
 
 std::optional<Best> Search::segment() {
-    const auto begin = start(0);
-    if (!begin) return std::nullopt;
-    Best best = found(polish(program_.program, program_.point(*begin)), "segment");
-    if (!best.usable) {
-        best.candidate = {*begin, "segment"};
-        best.rank = goal_.rank(*begin);
+    std::optional<Best> best;
+    const int pieces = level_ ? std::min(level_->pieces(), most_pieces) : 0;
+    for (int k = 0; k < std::max(pieces, 1); ++k) {
+        const auto begin = start(k);
+        if (!begin) break;
+        Best one = found(polish(program_.program, program_.point(*begin)), "segment");
+        if (!one.usable) {
+            one.candidate = {*begin, "segment"};
+            one.rank = goal_.rank(*begin);
+        }
+        if (!best || (one.usable && (!best->usable || preferable(one, *best)))) best = std::move(one);
+        if (best->optimality.global) break;
     }
     return best;
 }

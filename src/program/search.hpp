@@ -58,7 +58,7 @@ public:
     [[nodiscard]] bool a_solver_came_to(const Best& best) const;
     /// Not the answer of a solver.
     [[nodiscard]] bool unsolved(const Best* best) const { return best == &unaided_; }
-    /// The segment point, polished: admissible without a solver.
+    /// The best of the points of all pieces of the level, polished: admissible without a solver.
     [[nodiscard]] std::optional<Best> segment();
 
 private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 #include "nsma/program/admissible_set.hpp"
 #include "nsma/program/orbit_program.hpp"
@@ -135,6 +136,11 @@ private:
 }  // namespace
 
 TiedOptima tied_optima(const RelaxedSet& set, Objective objective, const VectorXd& beta, const VectorXd& reference) {
+    const Eigen::Index window = objective == Objective::nearest ? 2 * Eigen::Index{set.kernel.pattern.cells} : 0;
+    if (beta.size() != set.dimension() || (window > 0 && reference.size() != window)) {
+        throw std::invalid_argument("beta, reference: expected sizes " + std::to_string(set.dimension()) + " and " + std::to_string(window) +
+                                    ", got " + std::to_string(beta.size()) + " and " + std::to_string(reference.size()));
+    }
     return Ties(set, objective, beta, reference).find();
 }
 

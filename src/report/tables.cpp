@@ -192,6 +192,7 @@ std::string summary_table(const SweepSummary& summary) {
     count("energy levels asked", summary.levels);
     count("  solved", summary.solved);
     count("    proved the best at their level", summary.global);
+    count("    not proved the best", summary.solved - summary.global);
     count("    a motion solved above once more", summary.copies);
     count("    closed form, or proved alone", summary.closed_form);
     count("    solvers agree", summary.agreed);

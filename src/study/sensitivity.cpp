@@ -122,7 +122,7 @@ private:
                 solved_levels_.push_back(*level);
             }
             OptimumRecord record = optimum_record(*answer.orbit, gap_sign_, scene_.objective, level, answer.reference);
-            record.global = answer.optimality && answer.optimality->global;
+            record.global = proved_best(answer);
             if (level && scene_.objective == Objective::nearest) before = reference_window(*answer.orbit);
             count(record);
             sink_.optimum(record);
@@ -144,7 +144,7 @@ private:
     void curves(const RelaxedSet& set, bool admissible) {
         std::optional<double> level;
         std::vector<Eigen::VectorXd> optima;  // the best orbit without a relaxation, and those that tie with it
-        if (!solved_.empty() && admissible) {
+        if (!solved_.empty() && admissible && scene_.objective != Objective::nearest) {
             const std::size_t middle = solved_.size() / 2;
             level = solved_levels_[middle];
             optima = tied_optima(set, scene_.objective, solved_[middle]).others;
@@ -168,7 +168,7 @@ private:
                 if (record.admissible) record.least = interval.least;
                 record.unbounded = interval.unbounded;
                 if (record.admissible && admissible && !interval.unbounded) record.greatest = interval.greatest;
-                if (record.admissible && admissible && level && scene_.objective != Objective::nearest) {
+                if (record.admissible && admissible && level) {
                     record.level = level;
                     RelaxedRequest wanted;
                     wanted.objective = scene_.objective;

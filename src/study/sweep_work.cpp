@@ -50,7 +50,7 @@ void count(SweepSummary& summary, const OrbitAnswer& answer, bool asked) {
     if (answer.verdict == Verdict::undecided) ++summary.undecided;
     if (!solved) return;
     ++summary.solved;
-    if (answer.optimality && answer.optimality->global) {
+    if (proved_best(answer)) {
         ++summary.global;
     } else {
         const bool bounded = answer.optimality && answer.optimality->lower_bound;

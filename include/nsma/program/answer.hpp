@@ -95,4 +95,7 @@ struct OrbitAnswer {
     double seconds = 0;
 };
 
+/// Whether the orbit of an answer is proved the best of its pattern at its level.
+[[nodiscard]] inline bool proved_best(const OrbitAnswer& answer) { return answer.optimality && answer.optimality->global; }
+
 }  // namespace nsma

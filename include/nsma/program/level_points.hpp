@@ -16,9 +16,12 @@ public:
     /// The set must be nonempty, with its vertices, and outlive this object; level > 0.
     LevelPoints(const AdmissibleSet& set, double level);
 
-    /// Start number k >= 0, feasible on the level: 0 toward the greatest energy known, 1 toward
-    /// another vertex, then fixed-seed random mixtures. Absent when the level is not attainable.
+    /// Start number k >= 0, feasible on the level: toward each vertex above it, the greatest energy first, then toward
+    /// fixed-seed random mixtures. Absent when the level is not attainable.
     [[nodiscard]] std::optional<Eigen::VectorXd> start(int k) const;
+
+    /// Number of vertices above the level: it may cut the set into as many pieces, each with optima of its own.
+    [[nodiscard]] int pieces() const;
 
     /// The admissible point on the level that a segment from `gamma` (admissible) reaches.
     [[nodiscard]] std::optional<Eigen::VectorXd> reach(const Eigen::VectorXd& gamma) const;
