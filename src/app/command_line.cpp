@@ -214,12 +214,12 @@ Arguments parse(int count, const char* const* words) {
     add_quiet(*sensitivity_command, sensitivity.quiet);
     sensitivity_command->footer("Examples:\n"
                                 "  nsma sensitivity problems/first-mode.toml --out out/sensitivity\n"
-                                "  nsma sensitivity problems/first-mode.toml --free 48 --contact 16 --energy 37.5 --out out/one");
+                                "  nsma sensitivity problems/first-mode.toml --free 48 --contact 16 --energy 30 --out out/one");
 
     PlotArguments plot;
     auto* plot_command = app.add_subcommand("plot", "draw the charts of a stored sweep again");
     plot_command->add_option("DIR", plot.folder, "folder of a sweep")->required();
-    add_quiet(*plot_command, plot.quiet);
+    plot_command->add_flag("--quiet", plot.quiet, "print no list of charts");
     plot_command->footer("Example:\n  nsma plot out/first-mode");
 
     ProveArguments prove;
@@ -231,7 +231,7 @@ Arguments parse(int count, const char* const* words) {
     auto* prove_contact = prove_command->add_option("--contact", prove.contact_steps, "contact phase p [steps] of one pattern")->check(whole(1, max_period_steps / 2));
     prove_free->needs(prove_contact);
     prove_contact->needs(prove_free);
-    prove_command->add_option("--out", prove.out, "file to write; must not exist yet")->required();
+    prove_command->add_option("--out", prove.out, "file to write; must not exist yet; until it is complete FILE.part")->required();
     add_quiet(*prove_command, prove.quiet);
     prove_command->footer("Examples:\n"
                           "  nsma prove problems/first-mode.toml --cells 6 --free 23 --contact 1 --out proof.jsonl\n"

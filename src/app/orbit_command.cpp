@@ -87,7 +87,7 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
                further > 0 ? fmt::format(", {} further runs", further) : "");
     fmt::print("alpha [m/s]  ");
     const Eigen::VectorXd alpha = amplitudes(*answer.orbit);
-    for (const double value : alpha) fmt::print(" {:.6g}", value);
+    for (const double value : alpha) fmt::print(" {:.6g}", value + 0.0);
     fmt::print("\ngap           {:g} m\n", bar.gap);
 }
 

@@ -34,8 +34,9 @@ int run(const ProveArguments& arguments, const std::atomic<bool>& stop) {
     if (std::filesystem::exists(arguments.out)) {
         throw InputError(arguments.out + ": expected a new file, got an existing one");
     }
-    std::ofstream file(arguments.out);
-    if (!file) throw InputError(arguments.out + ": expected a file that can be written, got an error");
+    const std::string part = arguments.out + ".part";
+    std::ofstream file(part);
+    if (!file) throw InputError(part + ": expected a file that can be written, got an error");
 
     long done = 0;
     long proved = 0;
@@ -63,12 +64,19 @@ int run(const ProveArguments& arguments, const std::atomic<bool>& stop) {
             progress.show(done, static_cast<long>(patterns.size()));
         }
     }
-    file.flush();
-    if (!file) throw InputError(arguments.out + ": expected room to write, got an error");
-    fmt::print("{} patterns, {} proved; {} admissible ({} contact, {} free, {} stuck), greatest energy exact for {}\ncertificates are in {}\n",
-               done, proved, admissible, kinds[0], kinds[1], kinds[2], exact, arguments.out);
+    file.close();
+    if (!file) throw InputError(part + ": expected room to write, got an error");
+    const bool whole = done == static_cast<long>(patterns.size());
+    if (whole) {
+        std::error_code code;
+        std::filesystem::rename(part, arguments.out, code);
+        if (code) throw InputError(arguments.out + ": cannot be written: " + code.message());
+    }
+    fmt::print("{} patterns, {} proved; {} admissible ({} contact, {} free, {} stuck), greatest energy exact for {}\n{} {}\n",
+               done, proved, admissible, kinds[0], kinds[1], kinds[2], exact,
+               whole ? "certificates are in" : "interrupted: those so far are in", whole ? arguments.out : part);
     std::fflush(stdout);
-    if (stop.load()) return exit_interrupted;
+    if (!whole) return exit_interrupted;
     return proved == done ? exit_done : exit_solver;
 }
 

@@ -18,9 +18,11 @@
 namespace nsma::app {
 namespace {
 
-void draw(const std::string& folder) {
+void draw(const std::string& folder, bool list = true) {
     const DrawnCharts charts = draw_charts(folder);
-    for (const auto& picture : charts.pictures) fmt::print("chart    {}\n", picture.string());
+    for (const auto& picture : charts.pictures) {
+        if (list) fmt::print("chart    {}\n", picture.string());
+    }
     for (const auto& line : charts.skipped) fmt::print(stderr, "nsma: {}\n", line);
 }
 
@@ -137,7 +139,7 @@ int run(const ExportArguments& arguments, const std::atomic<bool>&) {
 }
 
 int run(const PlotArguments& arguments, const std::atomic<bool>&) {
-    draw(arguments.folder);
+    draw(arguments.folder, !arguments.quiet);
     return exit_done;
 }
 

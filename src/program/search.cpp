@@ -14,6 +14,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Eigen::Index slsqp_limit = 64;
 constexpr double bound_rounding = 1e-9;  // relative; a thousandth of what `global` allows
 constexpr int most_pieces = 64;
+// Half the side of the box within which a solver is asked about an optimum; the level is a sphere of radius one.
+constexpr double ask_box = 0.1;
 
 // Number of the start that OrbitRequest::start gives.
 constexpr int warm_start = -1;
@@ -116,10 +118,19 @@ void Search::search_with_ipopt() {
 
 // Does the solver, started off to the side of an optimum better than its own, come to it?
 void Search::ask(const Best& better, Best& worse, const char* solver) {
-    for (const double part : {0.1, 0.03, 0.01, 0.0}) {  // at last from the optimum itself
+    for (const double part : {0.1, 0.03, 0.01, 0.0}) {
         if (!better.usable || not_worse(worse, better)) return;
         const int number = next_++;
-        if (const auto aside = aside_of(better.candidate.gamma, part, number)) attempt(*aside, solver, number, worse);
+        const auto aside = aside_of(better.candidate.gamma, part, number);
+        if (!aside) continue;
+        if (!attempt(*aside, solver, number, worse) || !not_worse(worse, better)) {
+            // It may leap out of a small piece of the level: once more within a box around the optimum.
+            const Eigen::VectorXd centre = program_.point(better.candidate.gamma);
+            Program boxed = program_.program;
+            boxed.lower = boxed.lower.cwiseMax((centre.array() - ask_box).matrix());
+            boxed.upper = boxed.upper.cwiseMin((centre.array() + ask_box).matrix());
+            attempt(*aside, solver, number, worse, &boxed);
+        }
     }
 }
 
@@ -143,20 +154,20 @@ void Search::settle() {
     }
 }
 
-SolverOutcome Search::call(const std::string& solver, const Eigen::VectorXd& x) {
-    if (solver == "nlopt-slsqp") return solve_with_nlopt(NloptMethod::slsqp, program_.program, x, options_.solver);
-    if (solver == "nlopt-auglag") return solve_with_nlopt(NloptMethod::auglag_lbfgs, program_.program, x, options_.solver);
-    return ipopt_solver_.solve(program_.program, x);
+SolverOutcome Search::call(const std::string& solver, const Program& program, const Eigen::VectorXd& x) {
+    if (solver == "nlopt-slsqp") return solve_with_nlopt(NloptMethod::slsqp, program, x, options_.solver);
+    if (solver == "nlopt-auglag") return solve_with_nlopt(NloptMethod::auglag_lbfgs, program, x, options_.solver);
+    return ipopt_solver_.solve(program, x);
 }
 
-// One start of one solver, restored, polished and ranked; false when it is not usable. "nlopt" stands for SLSQP, then the
+// One start of one solver, restored, polished and ranked; false when it is not usable. `posed`: a part of the program. "nlopt" stands for SLSQP, then the
 // augmented Lagrangian.
-bool Search::attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best) {
+bool Search::attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best, const Program* posed) {
     if (solver == "nlopt") {
         const bool small = program_.program.variables() <= slsqp_limit;
-        return (small && attempt(start, "nlopt-slsqp", number, best)) || attempt(start, "nlopt-auglag", number, best);
+        return (small && attempt(start, "nlopt-slsqp", number, best, posed)) || attempt(start, "nlopt-auglag", number, best, posed);
     }
-    const SolverOutcome outcome = call(solver, program_.point(start));
+    const SolverOutcome outcome = call(solver, posed != nullptr ? *posed : program_.program, program_.point(start));
     SolverRun run;
     run.name = solver;
     run.start = number;

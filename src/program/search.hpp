@@ -69,8 +69,8 @@ private:
     void search_with_ipopt();
     void ask(const Best& better, Best& worse, const char* solver);
     void settle();
-    bool attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best);
-    [[nodiscard]] SolverOutcome call(const std::string& solver, const Eigen::VectorXd& x);
+    bool attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best, const Program* posed = nullptr);
+    [[nodiscard]] SolverOutcome call(const std::string& solver, const Program& program, const Eigen::VectorXd& x);
     [[nodiscard]] Best found(const Polished& polished, const char* method) const;
     void set_bound(double objective, double bound, Optimality& result) const;
     [[nodiscard]] double difference(const Best& a, const Best& b) const;

@@ -25,7 +25,7 @@ std::string csv_text(std::string_view text) {
 }
 
 std::string csv_number(double value) {
-    return std::isfinite(value) ? fmt::format("{}", value) : std::string();
+    return std::isfinite(value) ? fmt::format("{}", value + 0.0) : std::string();  // no negative zero
 }
 
 std::string csv_number(const std::optional<double>& value) {

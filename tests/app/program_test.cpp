@@ -469,6 +469,8 @@ TEST_F(Program, SweepAgainIsTheSameToTheByte) {
     fs::remove_all(out / "charts");
     const Result plot = run({"plot", out.string()});
     EXPECT_EQ(plot.exit_code, 0) << plot.err;
+    EXPECT_NE(plot.out.find("chart"), std::string::npos);
+    EXPECT_EQ(run({"plot", out.string(), "--quiet"}).out, "");
     int pictures = 0;
     for (const auto& entry : fs::directory_iterator(out / "charts")) {
         if (entry.path().extension() == ".svg" || entry.path().extension() == ".png") {
@@ -578,6 +580,82 @@ TEST_F(Program, InterruptedSweepKeepsReadableRows) {
     EXPECT_GE(rows, 1U);
     for (const auto& line : lines_of(contents(out / "orbits.jsonl"))) EXPECT_TRUE(json::accept(line));
     EXPECT_EQ(contents(out / "levels.csv").back(), '\n');
+}
+
+TEST_F(Program, CertificatesAreWrittenAndVerified) {
+    const std::string proofs = (folder_ / "proofs.jsonl").string();
+    const Result proved = run({"prove", scene_, "--cells", "6", "--period", "0", "4", "--out", proofs, "--quiet"});
+    EXPECT_EQ(proved.exit_code, 0) << proved.err;
+    EXPECT_NE(proved.out.find("276 patterns, 276 proved; 35 admissible (18 contact, 17 free, 0 stuck), greatest energy exact for 35\n"),
+              std::string::npos) << proved.out;
+    EXPECT_FALSE(fs::exists(proofs + ".part"));
+    EXPECT_EQ(lines_of(contents(proofs)).size(), 276U);
+    const Result checked = run({"check", proofs});
+    EXPECT_EQ(checked.exit_code, 0) << checked.out;
+    EXPECT_EQ(checked.out, "276 certificates valid, 0 rejected\n");
+    // An existing file is kept.
+    const std::string before = contents(proofs);
+    expect_refused({"prove", scene_, "--out", proofs, "--quiet"}, "proofs.jsonl");
+    EXPECT_EQ(contents(proofs), before);
+
+    // One false statement: the line, the pattern and what fails.
+    std::string forged = before;
+    const auto at = forged.find("\"kind\":\"contact\"");
+    ASSERT_NE(at, std::string::npos);
+    forged.replace(at, 16, "\"kind\":\"free\"");
+    const std::string file = write("forged.jsonl", forged);
+    const Result rejected = run({"check", file});
+    EXPECT_EQ(rejected.exit_code, 4);
+    const long line = 1 + std::count(before.begin(), before.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    EXPECT_EQ(rejected.out.rfind(file + ":" + std::to_string(line) + ": (6, ", 0), 0U) << rejected.out;
+    EXPECT_NE(rejected.out.find("rejected: kind: a contact step carries a wave, so free is not proved\n275 certificates valid, 1 rejected\n"),
+              std::string::npos) << rejected.out;
+    // No certificates, none of this version, no object.
+    expect_refused({"check", write("none.jsonl", "")}, "expected certificates");
+    expect_refused({"check", write("text.jsonl", "hello\n")}, "text.jsonl:1");
+    std::string old = lines_of(before)[0];
+    old.replace(old.find(":2,"), 3, ":1,");
+    expect_refused({"check", write("old.jsonl", old + "\n")}, "expected 2, got 1");
+}
+
+TEST_F(Program, InterruptedProofsAreNotTakenForWhole) {
+    const std::string proofs = (folder_ / "proofs.jsonl").string();
+    const pid_t child = start({"prove", scene_, "--cells", "200", "--period", "0", "4", "--out", proofs, "--quiet"});
+    for (int i = 0; i < 1200; ++i) {
+        std::error_code code;
+        if (fs::file_size(proofs + ".part", code) > 100'000 && !code) break;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    kill(child, SIGINT);
+    const Result result = finish(child);
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_FALSE(fs::exists(proofs));
+    EXPECT_NE(result.out.find("interrupted: those so far are in " + proofs + ".part"), std::string::npos) << result.out;
+    EXPECT_EQ(run({"check", proofs + ".part"}).exit_code, 0);  // whole lines
+}
+
+TEST_F(Program, ScanMethodsAgreeToTheByte) {
+    const std::vector<std::string> words{"scan", scene_, "--cells", "8", "--period", "0", "4", "--csv", "--quiet"};
+    auto integers = words;
+    integers.insert(integers.end(), {"--method", "integers"});
+    const Result certified = run(words);
+    EXPECT_EQ(certified.exit_code, 0);
+    EXPECT_EQ(run(integers).out, certified.out);
+    const auto lines = lines_of(certified.out);
+    EXPECT_EQ(std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(",contact"); }), 23);
+    EXPECT_EQ(std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(",free"); }), 15);
+    expect_refused({"scan", scene_, "--method", "magic"}, "--method");
+}
+
+TEST_F(Program, NoNegativeZeros) {
+    for (const std::string format : {"--json", ""}) {
+        std::vector<std::string> words{"orbit", scene_, "--cells", "20", "--free", "48", "--contact", "16", "--energy", "60"};
+        if (!format.empty()) words.push_back(format);
+        const Result result = run(words);
+        EXPECT_EQ(result.out.find(" -0 "), std::string::npos) << result.out;
+        EXPECT_EQ(result.out.find("-0.0,"), std::string::npos) << result.out;
+        EXPECT_EQ(result.out.find("-0.0\n"), std::string::npos) << result.out;
+    }
 }
 
 TEST_F(Program, AccuracyStudyRunsQuicklyAndRefusesWhatItCannotStudy) {

@@ -24,6 +24,7 @@
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/orbit_solver.hpp"
 #include "nsma/program/polish.hpp"
+#include "nsma/program/restore.hpp"
 
 extern char** environ;  // NOLINT: the name POSIX gives it
 
@@ -200,6 +201,19 @@ TEST(FailureTable, Row05SlsqpWithTheEnergyAsObjective) {
             expect_sound(answer);
             const double known = objective == Objective::min_energy ? *interval.least : *interval.greatest;
             EXPECT_NEAR(*answer.energy, known, 1e-9 * known);
+            EXPECT_TRUE(answer.solvers.empty());  // closed form: SLSQP is not asked
+        }
+        // Asked all the same, its word is not taken: what it holds is restored and polished to the least energy.
+        const auto problem = pattern_problem(pattern, 1);
+        const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::min_energy, std::nullopt, *interval.least);
+        for (const auto& vertex : problem.set.vertices) {
+            const auto outcome = nsma::solve_with_nlopt(nsma::NloptMethod::slsqp, program.program, program.point(vertex), {});
+            ASSERT_GT(outcome.iterations, 0) << outcome.status;
+            const auto near = nsma::restored(program, problem.set, nullptr, outcome.x);
+            ASSERT_TRUE(near);
+            const auto polished = nsma::polish(program.program, program.point(*near));
+            EXPECT_TRUE(polished.feasible && polished.stationary);
+            EXPECT_NEAR(polished.objective * program.objective_unit, *interval.least, 1e-9 * *interval.least);
         }
     }
 }

@@ -217,6 +217,25 @@ TEST(OrbitSolver, ClosedGap) {
     expect_sound(solve(pattern, 0, {.level = 1.0, .objective = Objective::nearest, .reference = {}}));
 }
 
+// One unit of displacement for every closed gap: the stretch that stores one joule.
+TEST(OrbitSolver, ClosedGapOfABarThatIsNotOfUnits) {
+    const Bar steel{0.5, 70e9, 2700.0, 7.85e-5, 0.0};
+    const double unit = std::sqrt(2 * 0.5 / (70e9 * 7.85e-5));  // Y S u^2/(2 L) = 1 J
+    const Pattern pattern{8, 16, 8};
+    const auto problem = pattern_problem(pattern, 0);
+    OrbitSolver solver;
+    for (const auto objective : {Objective::least_shock, Objective::least_force}) {
+        const auto answer = solver.solve(steel, problem, {.level = 0.3, .objective = objective, .reference = {}});
+        expect_sound(answer);
+        EXPECT_NEAR(nsma::energy(*answer.orbit), 0.3, 1e-12);
+        const double step = 0.5 / std::sqrt(70e9 / 2700.0) / 8;
+        EXPECT_LT((nsma::amplitudes(*answer.orbit) - answer.orbit->beta * (unit / step)).norm(), 1e-12 * nsma::amplitudes(*answer.orbit).norm());
+        if (objective != Objective::least_force) continue;
+        const double newton = 70e9 * 7.85e-5 * unit / 0.5;
+        EXPECT_NEAR(nsma::contact_force(*answer.orbit).cwiseAbs().maxCoeff(), *answer.objective_value * newton, 1e-12 * newton);
+    }
+}
+
 TEST(OrbitSolver, Prestressed) {
     // Mode 1 for d < 0: T from 2 tau to 3 tau. N = 10, n_T = 24: r = 8, p = 16, g = 4, m = 4,
     // E_min = 1/(2.4 - 3)^2.
