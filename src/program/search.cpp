@@ -45,7 +45,7 @@ Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Patt
     // The best orbit may lie in any piece of the level.
     if (level_) starts_ = std::max(starts_, std::min(level_->pieces(), most_pieces));
     if (!known) return;
-    unaided_.usable = true;
+    unaided_.usable = unaided_.known = true;
     unaided_.candidate = *known;
     unaided_.rank = goal.rank(known->gamma);
     unaided_.optimality = {goal.value(known->gamma), 0.0, true, 0.0};
@@ -95,7 +95,7 @@ std::optional<Eigen::VectorXd> Search::aside_of(const Eigen::VectorXd& gamma, do
 
 // NLopt is some twenty times cheaper a call, so it does the search among local optima.
 void Search::search_with_nlopt() {
-    for (int k = 0; k < starts_ && !nlopt_.optimality.global; ++k, ++next_) {
+    for (int k = 0; k < starts_ && !settled(nlopt_); ++k, ++next_) {
         const auto begin = start(next_);
         if (!begin) return;
         attempt(*begin, "nlopt", next_, nlopt_);
@@ -104,7 +104,7 @@ void Search::search_with_nlopt() {
 
 // Starts elsewhere, and goes on to further starts only while Ipopt holds a worse optimum.
 void Search::search_with_ipopt() {
-    for (int k = 0; k < starts_ && !ipopt_.optimality.global; ++k) {
+    for (int k = 0; k < starts_ && !settled(ipopt_); ++k) {
         const int number = ipopt_.run.name.empty() ? ipopt_start() : next_++;
         const auto begin = start(number);
         if (!begin) return;
@@ -238,8 +238,9 @@ double Search::difference(const Best& a, const Best& b) const {
     return scale > 0 ? std::abs(a.rank - b.rank) / scale : 0.0;
 }
 
-// The lower objective; of two that agree, the one that is proved.
+// The lower objective; of those that agree, the closed form, else the one that is proved.
 bool Search::preferable(const Best& a, const Best& b) const {
+    if (a.known != b.known && difference(a, b) <= options_.agreement_tolerance) return a.known;
     const bool proved = a.optimality.global;
     if (proved != b.optimality.global && difference(a, b) <= options_.agreement_tolerance) return proved;
     return a.rank < b.rank;
@@ -248,6 +249,9 @@ bool Search::preferable(const Best& a, const Best& b) const {
 bool Search::not_worse(const Best& a, const Best& b) const {
     return a.usable && (a.rank <= b.rank || difference(a, b) <= options_.agreement_tolerance);
 }
+
+// Nothing better is left to be found.
+bool Search::settled(const Best& best) const { return best.optimality.global || (unaided_.known && not_worse(best, unaided_)); }
 
 bool Search::a_solver_came_to(const Best& best) const { return not_worse(ipopt_, best) || not_worse(nlopt_, best); }
 

@@ -35,6 +35,7 @@ struct Best {
     Candidate candidate;
     SolverRun run;
     bool usable = false;
+    bool known = false;  ///< the best in closed form
     Optimality optimality;
 };
 
@@ -69,6 +70,7 @@ private:
     void search_with_ipopt();
     void ask(const Best& better, Best& worse, const char* solver);
     void settle();
+    [[nodiscard]] bool settled(const Best& best) const;
     bool attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best, const Program* posed = nullptr);
     [[nodiscard]] SolverOutcome call(const std::string& solver, const Program& program, const Eigen::VectorXd& x);
     [[nodiscard]] Best found(const Polished& polished, const char* method) const;

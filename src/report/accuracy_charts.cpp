@@ -61,7 +61,7 @@ std::string program_style(const std::string& label, bool certified) {
         double size;
         const char* colour;
     };
-    static constexpr std::array<Shape, 8> shapes{{{"Ipopt, warm start", 6, 0.8, "#56b4e9"},
+    static constexpr std::array<Shape, 7> shapes{{{"Ipopt, warm start", 6, 0.8, "#56b4e9"},
                                                   {"Ipopt", 6, 1.4, "#0072b2"},
                                                   {"SLSQP", 8, 1.4, "#b8500a"},
                                                   {"AUGLAG+LBFGS", 4, 1.3, "#009e73"},

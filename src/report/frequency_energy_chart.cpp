@@ -120,6 +120,8 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
     Block single{"single-orbits", ""}, interval{"intervals", ""}, open{"unbounded", ""},
         least{"least-energies", ""};
     Block solved{"levels-solved", ""}, doubtful{"levels-solvers-differ", ""};
+    Block no_contact{"no-contact-motion", ""};
+    const auto is_contact = [](const Pattern& pattern) { return pattern_kind(pattern) == PatternKind::contact; };
 
     std::string labels;
     for (int mode = 1; mode <= most_modes; ++mode) {
@@ -149,6 +151,10 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
         if (record.verdict != Verdict::admissible || !record.interval.least) continue;
         const double frequency = record.pattern.frequency_ratio();
         const double lo = *record.interval.least;
+        if (!is_contact(record.pattern)) {
+            if (lo > 0.0) no_contact.add(lo, frequency);
+            continue;
+        }
         const double from = std::max(lo, axes.energy.lo);
         if (record.interval.unbounded) {
             open.add(from, frequency, axes.energy.hi - from);
@@ -165,7 +171,8 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
         if (level.verdict != Verdict::admissible || !level.level || !level.energy) continue;
         const bool differ = level.agreement == name(Agreement::different_optimum) ||
                             level.agreement == name(Agreement::one_failed);
-        (differ ? doubtful : solved).add(*level.energy, level.pattern.frequency_ratio());
+        Block& block = !is_contact(level.pattern) ? no_contact : differ ? doubtful : solved;
+        block.add(*level.energy, level.pattern.frequency_ratio());
     }
 
     Chart chart{"frequency-energy", "", ""};
@@ -206,6 +213,7 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
     plot(linear_free, "1:2", "lines lw 1 dt 2 lc rgb '#888888'", "linear, free end");
     plot(linear_fixed, "1:2", "lines lw 1 dt 3 lc rgb '#888888'", "linear, end held");
     plot(exact, "1:2", "lines lw 5 lc rgb '#c8c8c8'", "exact mode k");
+    plot(no_contact, "1:2", "points pt '|' font ',7' lc rgb '#999999'", "no contact motion");
     plot(interval, "1:2:3:(0)", "vectors nohead lw 2 lc rgb '#0072b2'", "energy interval");
     plot(open, "1:2:3:(0)", "vectors head filled size screen 0.012,18 lw 2 lc rgb '#0072b2'",
          "unbounded interval");

@@ -176,16 +176,16 @@ std::vector<std::string> timings_csv_rows(const OrbitAnswer& answer) {
 std::string summary_table(const SweepSummary& summary) {
     std::string table = summary.interrupted ? "interrupted: what was done until then\n" : "";
     const auto row = [&table](const char* what, const std::string& value) {
-        table += fmt::format("{:<34}{:>12}\n", what, value);
+        table += fmt::format("{:<38}{:>10}\n", what, value);
     };
     const auto count = [&row](const char* what, int value) { row(what, fmt::format("{}", value)); };
     count("patterns visited", summary.patterns);
     count("  trivial (no free amplitude)", summary.trivial);
     count("  inadmissible", summary.inadmissible);
     count("  admissible", summary.admissible);
-    const char* const meaning[] = {"    contact motions", "    free: no force, a grazing vibration", "    stuck: never leave the wall"};
+    const char* const meaning[] = {"    contact: press and leave the wall", "    free: graze it without force", "    stuck: never leave it"};
     for (std::size_t kind = 0; kind < summary.kinds.size(); ++kind) count(meaning[kind], summary.kinds[kind]);
-    count("    not solved: no contact motion", summary.left);
+    count("    left, being no contact motion", summary.left);
     count("  failed", summary.failed_patterns);
     count("  without an exact proof", summary.unproved);
     count("  admissible, greatest energy open", summary.open_bounds);

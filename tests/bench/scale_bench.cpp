@@ -18,6 +18,7 @@
 #include "nsma/program/orbit_solver.hpp"
 #include "nsma/program/solver.hpp"
 #include "nsma/report/sweep_store.hpp"
+#include "nsma/study/accuracy.hpp"
 #include "nsma/study/scan.hpp"
 #include "nsma/study/sweep_queue.hpp"
 #include "nsma/study/work_messages.hpp"
@@ -111,13 +112,9 @@ void march_dense(benchmark::State& state) {
 }
 BENCHMARK(march_dense)->Arg(24)->Arg(48)->Arg(96)->Arg(192)->Unit(benchmark::kMicrosecond);
 
-// One call of one solver on the condensed program of (4N - 1, 1), m = 2N - 1, at half its interval (in logarithm).
+// One call of one solver on the first-mode pattern of m amplitudes at half its interval (in logarithm).
 void solve(benchmark::State& state, bool with_ipopt) {
-    const int m = static_cast<int>(state.range(0));
-    const int cells = (m + 1) / 2;
-    PatternOptions options;
-    options.prove = false;
-    const PatternProblem problem = pattern_problem({cells, 4 * cells - 1, 1}, 1, options);
+    const PatternProblem problem = pattern_problem(accuracy_pattern(static_cast<int>(state.range(0)), 1), 1, {.prove = false});
     const double level = std::sqrt(*problem.interval.least * *problem.interval.greatest);
     const OrbitProgram program =
         orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, level, 0.0);
@@ -133,26 +130,21 @@ void solve(benchmark::State& state, bool with_ipopt) {
 }
 void solve_ipopt(benchmark::State& state) { solve(state, true); }
 void solve_nlopt(benchmark::State& state) { solve(state, false); }
-BENCHMARK(solve_ipopt)->Arg(7)->Arg(15)->Arg(31)->Arg(63)->Unit(benchmark::kMillisecond);
-BENCHMARK(solve_nlopt)->Arg(7)->Arg(15)->Arg(31)->Arg(63)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve_ipopt)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve_nlopt)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Unit(benchmark::kMillisecond);
 
-// The same patterns from end to end at 1.5 E_min: verdict and interval with their proof, then the level by Ipopt alone,
-// polished, bounded and replayed.
+// The same patterns from end to end: verdict and interval with their proof, then the level.
 void whole_orbit(benchmark::State& state) {
-    const int m = static_cast<int>(state.range(0));
-    const int cells = 5 * m / 4;
+    const Pattern pattern = accuracy_pattern(static_cast<int>(state.range(0)), 1);
     OrbitAnswer answer;
     for (auto _ : state) {
-        const PatternProblem problem = pattern_problem({cells, 2 * cells + m, 2 * cells - m}, 1);
-        OrbitSolverOptions options;
-        options.solvers = SolverChoice::ipopt;
-        OrbitSolver solver(options);
-        answer = solver.solve(Bar{}, problem, {.level = 1.5 * *problem.interval.least, .reference = {}});
+        const PatternProblem problem = pattern_problem(pattern, 1);
+        OrbitSolver solver;
+        answer = solver.solve(Bar{}, problem, {.level = 1.3 * *problem.interval.least, .reference = {}});
     }
-    label(state, {{"admissible", answer.verdict == Verdict::admissible},
-                  {"gap", answer.optimality ? answer.optimality->gap : 1.0}});
+    label(state, {{"admissible", answer.verdict == Verdict::admissible}, {"gap", answer.optimality ? answer.optimality->gap : 1.0}});
 }
-BENCHMARK(whole_orbit)->Arg(48)->Arg(96)->Arg(192)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(whole_orbit)->Arg(50)->Arg(100)->Arg(200)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 // What rank 0 does for one answer: read the message, store it, choose the next unit, pack it. The number is N.
 void serve(benchmark::State& state) {
