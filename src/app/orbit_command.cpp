@@ -35,10 +35,10 @@ void print_presolve(const Reduction& reduction) {
 void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar& bar) {
     const bool closed = answer.gap_sign == 0;
     const Pattern& pattern = answer.pattern;
+    if (answer.kind) fmt::print("kind          {}: {}\n", name(*answer.kind), meaning(*answer.kind));
     fmt::print("pattern       r = {}, p = {}, N = {}: m = {}, T/tau = {:.6g}, omega/omega_1 = {:.6g}\n",
                pattern.free_steps, pattern.contact_steps, pattern.cells, answer.kernel_dimension,
                pattern.period_ratio(), pattern.frequency_ratio());
-    if (answer.kind) fmt::print("kind          {}: {}\n", name(*answer.kind), meaning(*answer.kind));
     fmt::print("verdict       {}{}{}{}\n", name(answer.verdict), answer.verdict_proved ? ", proved" : "",
                answer.reason.empty() ? "" : ": ", answer.reason);
     if (answer.interval.least) {

@@ -120,13 +120,13 @@ private:
         Rational square;
         for (const auto& [column, value] : trial.greatest) square += value * value;
         trial.energy_attained = energy_factor() * square;
-        trial.greatest_proof = chain();
-        trial.energy_bound = proved_energy_bound(trial);
         const CheckResult result = check(trial);
         if (!result.valid) {
             proof_.unproved = result.reason;
             return;
         }
+        trial.greatest_proof = chain();
+        trial.energy_bound = proved_energy_bound(trial);  // verified by itself
         proof_.certificate = std::move(trial);
         if (!proof_.exact_greatest()) proof_.unproved = "no bound of the greatest energy meets the energy attained";
     }

@@ -121,6 +121,8 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
         least{"least-energies", ""};
     Block solved{"levels-solved", ""}, doubtful{"levels-solvers-differ", ""};
     Block no_contact{"no-contact-motion", ""};
+    const double tick_height = 0.02 * (axes.frequency.hi - axes.frequency.lo);
+    const auto tick = [&](double energy, double frequency) { no_contact.add(energy, frequency - 0.5 * tick_height, tick_height); };
     const auto is_contact = [](const Pattern& pattern) { return pattern_kind(pattern) == PatternKind::contact; };
 
     std::string labels;
@@ -152,7 +154,7 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
         const double frequency = record.pattern.frequency_ratio();
         const double lo = *record.interval.least;
         if (!is_contact(record.pattern)) {
-            if (lo > 0.0) no_contact.add(lo, frequency);
+            if (lo > 0.0) tick(lo, frequency);
             continue;
         }
         const double from = std::max(lo, axes.energy.lo);
@@ -171,8 +173,11 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
         if (level.verdict != Verdict::admissible || !level.level || !level.energy) continue;
         const bool differ = level.agreement == name(Agreement::different_optimum) ||
                             level.agreement == name(Agreement::one_failed);
-        Block& block = !is_contact(level.pattern) ? no_contact : differ ? doubtful : solved;
-        block.add(*level.energy, level.pattern.frequency_ratio());
+        if (!is_contact(level.pattern)) {
+            tick(*level.energy, level.pattern.frequency_ratio());
+        } else {
+            (differ ? doubtful : solved).add(*level.energy, level.pattern.frequency_ratio());
+        }
     }
 
     Chart chart{"frequency-energy", "", ""};
@@ -213,7 +218,7 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
     plot(linear_free, "1:2", "lines lw 1 dt 2 lc rgb '#888888'", "linear, free end");
     plot(linear_fixed, "1:2", "lines lw 1 dt 3 lc rgb '#888888'", "linear, end held");
     plot(exact, "1:2", "lines lw 5 lc rgb '#c8c8c8'", "exact mode k");
-    plot(no_contact, "1:2", "points pt '|' font ',7' lc rgb '#999999'", "no contact motion");
+    plot(no_contact, "1:2:(0):3", "vectors nohead lw 1 lc rgb '#999999'", "no contact motion");
     plot(interval, "1:2:3:(0)", "vectors nohead lw 2 lc rgb '#0072b2'", "energy interval");
     plot(open, "1:2:3:(0)", "vectors head filled size screen 0.012,18 lw 2 lc rgb '#0072b2'",
          "unbounded interval");

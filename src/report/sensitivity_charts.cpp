@@ -37,10 +37,9 @@ const char* words_of(const std::string& relaxed) {
     return found == words.end() ? "?" : found->second;
 }
 
-// What relaxing one row saves, relative; zero where there is no number and for a row that holds
-// only an orbit tied with this one.
+// What relaxing one row saves, relative, also where only an orbit tied with this one uses it; zero where there is no number.
 double saving(const OptimumRecord& optimum, const Price& price) {
-    return price.active && price.slope.right ? std::max(-*price.slope.right / optimum.value, 0.0) : 0.0;
+    return price.slope.right ? std::max(-*price.slope.right / optimum.value, 0.0) : 0.0;
 }
 
 bool is_row(const Price& price) {

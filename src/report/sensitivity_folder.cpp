@@ -183,7 +183,7 @@ std::string funnel_text(const SensitivityRecords& records) {
 }
 
 std::string summary_text(const SensitivitySummary& summary) {
-    return fmt::format("patterns {}, admissible {}, of which {} are no contact motion and were left\noptima {}: {} nondegenerate, {} tied with their time reversal, {} refused\n"
+    return fmt::format("patterns {}, admissible {}, of which {} are no contact motion and were left\noptima {}: {} nondegenerate, {} tied with others, {} refused\n"
                        "worst KKT residual {:.1e}, worst defect of Euler's identity {:.1e} (relative)\n"
                        "frequency along a mode, exact against stored neighbours: worst {:.1e} (relative)\n{}",
                        summary.patterns, summary.admissible, summary.left, summary.optima, summary.nondegenerate, summary.tied,

@@ -40,7 +40,7 @@ whole "N = 20 by both solvers" "$nsma" sweep "$runs/twenty.toml" --solver both -
 # First-mode patterns (5m/2, 6m, 2m) at 1.3 E_min = 32.5 E_g.
 for m in 50 100 200 400; do
     for solver in proof ipopt; do
-        whole "one level of m = $m, --solver $solver" "$nsma" orbit "$scene" --cells $((5 * m / 2)) --free $((6 * m)) \
+        whole "one level of m = $m by --solver $solver" "$nsma" orbit "$scene" --cells $((5 * m / 2)) --free $((6 * m)) \
             --contact $((2 * m)) --energy 32.5 --solver $solver
     done
 done

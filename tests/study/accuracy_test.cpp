@@ -115,6 +115,7 @@ TEST(Accuracy, TheWholePathsSucceedInEveryCellOfAReducedMap) {
         bar.gap = sign;
         for (const int size : {2, 4, 8}) {
             const auto problem = nsma::pattern_problem(nsma::accuracy_pattern(size, sign), sign);
+            EXPECT_EQ(problem.kind, nsma::PatternKind::contact);
             const double least = *problem.interval.least;
             const double greatest = *problem.interval.greatest;
             for (const double level : {least * (1 + 1e-10), least * (1 + 1e-4), 0.5 * (least + greatest),

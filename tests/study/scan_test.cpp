@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 namespace {
@@ -64,6 +66,31 @@ TEST(Scan, EveryMethodGivesTheSameVerdictsAndIntervals) {
             }
         }, [] { return true; }, nsma::ScanMethod::integers);
         EXPECT_EQ(i, certified.size());
+    }
+}
+
+// Counts of a program that shares nothing with this one.
+TEST(Scan, KindsAreThoseOfAnIndependentCount) {
+    struct Count {
+        int cells;
+        double gap;
+        int admissible, contact, free, stuck;
+    };
+    for (const Count& count : {Count{6, 1, 35, 18, 17, 0}, Count{8, 1, 38, 23, 15, 0}, Count{8, -1, 98, 34, 0, 64}, Count{6, 0, 20, 20, 0, 0}}) {
+        Scene scene = six_cells();
+        scene.mesh.cells = count.cells;
+        scene.bar.gap = count.gap;
+        std::array<int, 3> kinds{};
+        int admissible = 0;
+        nsma::scan(scene, [&](const auto& record) {
+            EXPECT_TRUE(record.proved) << record.reason;
+            EXPECT_EQ(record.kind.has_value(), record.verdict == Verdict::admissible);
+            if (!record.kind) return;
+            ++admissible;
+            ++kinds.at(static_cast<std::size_t>(*record.kind));
+        }, [] { return true; });
+        EXPECT_EQ(admissible, count.admissible) << count.cells << ' ' << count.gap;
+        EXPECT_EQ(kinds, (std::array<int, 3>{count.contact, count.free, count.stuck})) << count.cells << ' ' << count.gap;
     }
 }
 
