@@ -49,42 +49,4 @@ Rational exact(double value) {
     return exponent >= 0 ? Rational(result * power) : Rational(result / power);
 }
 
-std::optional<std::vector<Rational>> solve_exactly(std::vector<std::vector<Integer>> a,
-                                                   std::vector<Integer> b) {
-    const std::size_t rows = a.size();
-    const std::size_t columns = rows == 0 ? 0 : a.front().size();
-    if (columns == 0) {
-        const bool consistent = std::all_of(b.begin(), b.end(), [](const Integer& v) { return v == 0; });
-        return consistent ? std::optional(std::vector<Rational>{}) : std::nullopt;
-    }
-    if (rows < columns) return std::nullopt;
-    // Bareiss: every division is exact, so entries stay minors of the data.
-    Integer previous = 1;
-    for (std::size_t k = 0; k < columns; ++k) {
-        std::size_t pivot = k;
-        while (pivot < rows && a[pivot][k] == 0) ++pivot;
-        if (pivot == rows) return std::nullopt;
-        std::swap(a[pivot], a[k]);
-        std::swap(b[pivot], b[k]);
-        for (std::size_t i = k + 1; i < rows; ++i) {
-            for (std::size_t j = k + 1; j < columns; ++j) {
-                a[i][j] = (a[k][k] * a[i][j] - a[i][k] * a[k][j]) / previous;
-            }
-            b[i] = (a[k][k] * b[i] - a[i][k] * b[k]) / previous;
-            a[i][k] = 0;
-        }
-        previous = a[k][k];
-    }
-    for (std::size_t i = columns; i < rows; ++i) {
-        if (b[i] != 0) return std::nullopt;
-    }
-    std::vector<Rational> x(columns);
-    for (std::size_t k = columns; k-- > 0;) {
-        Rational sum(b[k]);
-        for (std::size_t j = k + 1; j < columns; ++j) sum -= a[k][j] * x[j];
-        x[k] = sum / a[k][k];
-    }
-    return x;
-}
-
 }  // namespace nsma

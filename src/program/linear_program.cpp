@@ -77,15 +77,6 @@ LinearSolver::~LinearSolver() = default;
 LinearSolver::LinearSolver(LinearSolver&&) noexcept = default;
 LinearSolver& LinearSolver::operator=(LinearSolver&&) noexcept = default;
 
-void LinearSolver::set_bounds(Eigen::Index variable, double lower, double upper) {
-    implementation_->simplex.setColumnBounds(static_cast<int>(variable), clp_bound(lower),
-                                             clp_bound(upper));
-}
-
-void LinearSolver::set_row_bounds(Eigen::Index row, double lower, double upper) {
-    implementation_->simplex.setRowBounds(static_cast<int>(row), clp_bound(lower), clp_bound(upper));
-}
-
 LinearSolution LinearSolver::minimise(const Eigen::VectorXd& cost) {
     auto& simplex = implementation_->simplex;
     expect_size("cost", implementation_->variables, cost.size());
@@ -103,11 +94,6 @@ LinearSolution LinearSolver::minimise(const Eigen::VectorXd& cost) {
     const int status = simplex.status();
     if (status == 1) {
         solution.status = LinearStatus::infeasible;
-        simplex.dual();  // the ray is kept by the dual method only
-        const std::unique_ptr<double[]> ray(simplex.infeasibilityRay());
-        if (ray) {
-            solution.row_dual = Eigen::Map<const Eigen::VectorXd>(ray.get(), implementation_->rows);
-        }
         return solution;
     }
     if (status == 2) {

@@ -13,10 +13,8 @@ using nsma::exact;
 using nsma::Integer;
 using nsma::parse_rational;
 using nsma::Rational;
-using nsma::solve_exactly;
 using nsma::to_double;
 using nsma::to_string;
-using Matrix = std::vector<std::vector<Integer>>;
 
 TEST(Exact, PrintsAndReadsTheSameFraction) {
     std::mt19937 random(1);
@@ -98,76 +96,6 @@ TEST(Exact, ToDoubleRoundsToTheNearest) {
     const double infinity = std::numeric_limits<double>::infinity();
     EXPECT_EQ(to_double(Rational(Integer(1) << 1030)), infinity);
     EXPECT_EQ(to_double(Rational(-(Integer(1) << 1030))), -infinity);
-}
-
-TEST(SolveExactly, KnownSystems) {
-    // 2x + y = 3, x - y = 0.
-    EXPECT_EQ(solve_exactly({{2, 1}, {1, -1}}, {3, 0}), (std::vector<Rational>{1, 1}));
-    // A zero pivot needs a swap: y = 2, x + y = 1/... in integers 3x + 3y = 4.
-    EXPECT_EQ(solve_exactly({{0, 1}, {3, 3}}, {2, 4}), (std::vector<Rational>{Rational(-2, 3), 2}));
-    EXPECT_EQ(solve_exactly({{-7}}, {3}), (std::vector<Rational>{Rational(-3, 7)}));
-    EXPECT_EQ(solve_exactly({}, {}), std::vector<Rational>{});
-}
-
-TEST(SolveExactly, OverdeterminedSystems) {
-    // The line through (1, 3), (2, 5), (4, 9), (7, 15) is 2x + 1.
-    EXPECT_EQ(solve_exactly({{1, 1}, {2, 1}, {4, 1}, {7, 1}}, {3, 5, 9, 15}), (std::vector<Rational>{2, 1}));
-    EXPECT_FALSE(solve_exactly({{1, 1}, {2, 1}, {4, 1}, {7, 1}}, {3, 5, 9, 16}));
-    EXPECT_FALSE(solve_exactly({{1}, {0}}, {1, 1}));
-    EXPECT_EQ(solve_exactly({{0}, {0}, {4}}, {0, 0, 2}), (std::vector<Rational>{Rational(1, 2)}));
-}
-
-TEST(SolveExactly, DeficientRankHasNoAnswer) {
-    EXPECT_FALSE(solve_exactly({{1, 2}, {2, 4}}, {3, 6}));  // consistent, not unique
-    EXPECT_FALSE(solve_exactly({{1, 2}, {2, 4}}, {3, 7}));
-    EXPECT_FALSE(solve_exactly({{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {1, 1, 1}}, {0, 0, 0, 0}));
-    EXPECT_FALSE(solve_exactly({{1, 2}}, {3}));  // fewer rows than unknowns
-    EXPECT_FALSE(solve_exactly({{0, 1}, {0, 2}}, {1, 2}));
-}
-
-TEST(SolveExactly, HilbertMatricesHaveNoRounding) {
-    // Condition 1e16 and more: any rounding would show. lcm(1..27) makes H an integer matrix.
-    Integer common = 1;
-    for (int k = 1; k <= 27; ++k) common = lcm(common, Integer(k));
-    for (const std::size_t n : {3U, 8U, 14U}) {
-        std::vector<Rational> expected(n);
-        for (std::size_t j = 0; j < n; ++j) expected[j] = Rational(static_cast<long>(j * j) - 5, 1 + j % 2);
-        Matrix a(n, std::vector<Integer>(n));
-        std::vector<Integer> b(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            Rational sum;
-            for (std::size_t j = 0; j < n; ++j) {
-                a[i][j] = 2 * common / Integer(i + j + 1);
-                sum += expected[j] * a[i][j];
-            }
-            ASSERT_EQ(denominator(sum), 1);
-            b[i] = numerator(sum);
-        }
-        EXPECT_EQ(solve_exactly(a, b), expected) << n;
-    }
-}
-
-TEST(SolveExactly, RandomSystemsSatisfyTheirEquations) {
-    std::mt19937 random(4);
-    int solved = 0;
-    for (int round = 0; round < 300; ++round) {
-        const std::size_t n = 1 + random() % 7;
-        Matrix a(n, std::vector<Integer>(n));
-        std::vector<Integer> b(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            for (auto& entry : a[i]) entry = static_cast<int>(random() % 5) - 2;
-            b[i] = static_cast<int>(random() % 19) - 9;
-        }
-        const auto x = solve_exactly(a, b);
-        if (!x) continue;
-        ++solved;
-        for (std::size_t i = 0; i < n; ++i) {
-            Rational sum;
-            for (std::size_t j = 0; j < n; ++j) sum += a[i][j] * (*x)[j];
-            EXPECT_EQ(sum, b[i]);
-        }
-    }
-    EXPECT_GT(solved, 150);  // most small random matrices are regular
 }
 
 }  // namespace

@@ -31,9 +31,4 @@ using RationalVector = std::vector<std::pair<int, Rational>>;
 /// The exact value of a finite double.
 [[nodiscard]] Rational exact(double value);
 
-/// Solves a x = b exactly for a of full column rank, rows >= columns (row-major). Absent when
-/// the rank is deficient or the system has no solution. Fraction-free elimination.
-[[nodiscard]] std::optional<std::vector<Rational>> solve_exactly(
-    std::vector<std::vector<Integer>> a, std::vector<Integer> b);
-
 }  // namespace nsma

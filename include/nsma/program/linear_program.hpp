@@ -24,8 +24,7 @@ enum class LinearStatus { optimal, infeasible, unbounded, failed };
 struct LinearSolution {
     LinearStatus status = LinearStatus::failed;
     Eigen::VectorXd x;        ///< optimal point, size n
-    Eigen::VectorXd row_dual; ///< optimal: multipliers of the rows; infeasible: a Farkas ray y with
-                              ///< y . rows x bounded away from its attainable range; size R
+    Eigen::VectorXd row_dual; ///< optimal: multipliers of the rows, size R
     double value = 0;
 };
 
@@ -40,10 +39,6 @@ public:
     LinearSolver& operator=(LinearSolver&&) noexcept;
 
     [[nodiscard]] LinearSolution minimise(const Eigen::VectorXd& cost);
-
-    /// Replaces the bounds of one variable; keeps the basis.
-    void set_bounds(Eigen::Index variable, double lower, double upper);
-    void set_row_bounds(Eigen::Index row, double lower, double upper);
 
 private:
     struct Implementation;
