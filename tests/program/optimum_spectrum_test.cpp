@@ -56,7 +56,7 @@ VectorXd target_window(const Subject& subject, double part) {
 TEST(OptimumSpectrum, SimplexesHaveTheBestOfAllTheirFaces) {
     const bool longer = std::getenv("NSMA_LONG_TESTS") != nullptr;
 #ifdef __SANITIZE_ADDRESS__
-    const int most = longer ? 6 : 2;
+    const int most = longer ? 6 : 3;
 #else
     const int most = longer ? 8 : 4;
 #endif
