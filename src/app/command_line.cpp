@@ -166,7 +166,7 @@ Arguments parse(int count, const char* const* words) {
     orbit_command->add_flag("--json", orbit.json, "one JSON object on stdout instead of text");
     orbit_command->footer("Examples:\n"
                           "  nsma orbit problems/first-mode.toml --free 48 --contact 16\n"
-                          "  nsma orbit problems/first-mode.toml --cells 6 --free 23 --contact 1 --energy 1.6 --json");
+                          "  nsma orbit problems/first-mode.toml --cells 6 --free 16 --contact 4 --energy 12 --json");
 
     SweepArguments sweep;
     SolverWords sweep_words;
@@ -234,7 +234,7 @@ Arguments parse(int count, const char* const* words) {
     prove_command->add_option("--out", prove.out, "file to write; must not exist yet; until it is complete FILE.part")->required();
     add_quiet(*prove_command, prove.quiet);
     prove_command->footer("Examples:\n"
-                          "  nsma prove problems/first-mode.toml --cells 6 --free 23 --contact 1 --out proof.jsonl\n"
+                          "  nsma prove problems/first-mode.toml --cells 6 --free 16 --contact 4 --out proof.jsonl\n"
                           "  nsma prove problems/first-mode.toml --cells 24 --period 0 4 --out proofs.jsonl");
 
     CheckArguments check;

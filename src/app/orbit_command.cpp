@@ -40,7 +40,7 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
                pattern.free_steps, pattern.contact_steps, pattern.cells, answer.kernel_dimension,
                pattern.period_ratio(), pattern.frequency_ratio());
     fmt::print("verdict       {}{}{}{}\n", name(answer.verdict), answer.verdict_proved ? ", proved" : "",
-               answer.reason.empty() ? "" : ": ", answer.reason);
+               answer.reason.empty() ? "" : "; ", answer.reason);
     if (answer.interval.least) {
         const std::string greatest = answer.interval.unbounded ? "unbounded"
                                      : answer.interval.greatest

@@ -41,6 +41,10 @@ int run(const SensitivityArguments& arguments, const std::atomic<bool>& stop) {
         throw InputError(fmt::format("command line: --energy: expected none with objective {}, got {}",
                                      name(scene.objective), *request.level));
     }
+    if (extreme && scene.bar.gap_sign() == 0) {
+        throw InputError(fmt::format("{}: objective: expected one at a given energy for a closed gap, got {}", arguments.scene_file,
+                                     name(scene.objective)));
+    }
     open_sensitivity_folder(arguments.out, scene);
     SensitivityRecords records;
     SensitivitySummary summary;
@@ -54,6 +58,9 @@ int run(const SensitivityArguments& arguments, const std::atomic<bool>& stop) {
     fmt::print("{}results are in {}\n", sensitivity_text("sensitivity.txt", scene, records, summary), arguments.out);
     if (!summary.interrupted) {
         for (const auto& picture : draw_sensitivity(arguments.out, scene, records)) fmt::print("chart    {}\n", picture.string());
+    }
+    if (summary.left > 0 && summary.left == summary.admissible) {
+        fmt::print(stderr, "nsma: no pattern of the scene is a contact motion; --all-kinds studies the other {}\n", summary.left);
     }
     if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     if (summary.interrupted) return exit_interrupted;

@@ -118,14 +118,20 @@ std::optional<LabelledMotion> least_label(const Orbit& orbit, double tolerance) 
     return first;
 }
 
-bool same_motion(const LabelledMotion& a, const LabelledMotion& b, double tolerance) {
-    if (a.label.free_steps != b.label.free_steps || a.label.contact_steps != b.label.contact_steps) return false;
+std::array<std::uint64_t, 2> fingerprints(const LabelledMotion& motion) {
+    constexpr double steps = 1e7;
     double largest = 0;
-    for (const double wave : a.waves) largest = std::max(largest, std::abs(wave));
-    for (std::size_t n = 0; n < a.waves.size(); ++n) {
-        if (std::abs(a.waves[n] - b.waves[n]) > tolerance * largest) return false;
+    for (const double wave : motion.waves) largest = std::max(largest, std::abs(wave));
+    std::array<std::uint64_t, 2> result{};
+    for (std::size_t grid = 0; grid < 2; ++grid) {
+        std::uint64_t hash = 14695981039346656037U;  // FNV-1a
+        const auto add = [&hash](std::int64_t value) { hash = (hash ^ static_cast<std::uint64_t>(value)) * 1099511628211U; };
+        add(motion.label.free_steps);
+        add(motion.label.contact_steps);
+        for (const double wave : motion.waves) add(std::llround(steps * wave / largest + (grid == 0 ? 0.0 : 0.5)));
+        result.at(grid) = hash;
     }
-    return true;
+    return result;
 }
 
 }  // namespace nsma

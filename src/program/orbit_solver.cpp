@@ -92,14 +92,10 @@ public:
 private:
     // In words, what is not known of the orbit that was found.
     void say_open() {
-        const auto& optimality = answer_.optimality;
-        std::string words = "not proved the best, no bound";
-        if (optimality && optimality->lower_bound) {
-            std::ostringstream text;
-            text << std::setprecision(2) << "not proved the best, gap " << 100 * optimality->gap << " %";
-            words = text.str();
-        }
-        answer_.reason += (answer_.reason.empty() ? "" : "; ") + words;
+        const double percent = answer_.optimality ? 100 * answer_.optimality->gap : 100.0;
+        std::ostringstream text;
+        text << std::setprecision(percent < 10 ? 2 : 3) << "the orbit is not proved the best, gap " << percent << " %";
+        answer_.reason += (answer_.reason.empty() ? "" : "; ") + text.str();
     }
 
     // Sets below/above and returns false where the level is outside the interval.
@@ -357,6 +353,10 @@ OrbitAnswer OrbitSolver::solve(const Bar& bar, const PatternProblem& problem,
     }
     if (request.level && !(std::isfinite(*request.level) && *request.level > 0)) {
         throw std::invalid_argument("level: expected a finite number > 0, got " +
+                                    std::to_string(*request.level));
+    }
+    if (request.level && is_extreme(request.objective)) {
+        throw std::invalid_argument("level: expected none for objective " + std::string(name(request.objective)) + ", got " +
                                     std::to_string(*request.level));
     }
     const Eigen::Index window = 2 * static_cast<Eigen::Index>(problem.kernel.pattern.cells);

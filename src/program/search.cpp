@@ -12,6 +12,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Unknowns beyond which SLSQP, whose steps cost their cube, is left to the augmented Lagrangian with L-BFGS, and a quarter
 // of the starts is made, each of which costs as much as all of a small program.
 constexpr Eigen::Index slsqp_limit = 64;
+// Objectives are compared relative to the greater one, at least to this share of the level: that of an orbit found again is
+// zero but for rounding.
+constexpr double objective_floor = 1e-6;
 constexpr double bound_rounding = 1e-9;  // relative; a thousandth of what `global` allows
 constexpr int most_pieces = 64;
 // Half the side of the box within which a solver is asked about an optimum; the level is a sphere of radius one.
@@ -36,14 +39,12 @@ double Goal::rank(const Eigen::VectorXd& gamma) const {
 
 Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const PatternProblem& problem,
                const OrbitRequest& request, const Goal& goal, double least_energy, const std::optional<Candidate>& known)
-    : options_(options), ipopt_solver_(ipopt), problem_(problem), goal_(goal),
+    : options_(options), ipopt_solver_(ipopt), problem_(problem), goal_(goal), floor_(objective_floor * request.level.value_or(least_energy)),
       program_(orbit_program(problem.set.reduction, problem.kernel, goal.objective, request.level, least_energy, goal.reference)),
       with_ipopt_(options.solvers != SolverChoice::nlopt), with_nlopt_(options.solvers != SolverChoice::ipopt), starts_(options.starts) {
     if (request.level) level_.emplace(problem.set, *request.level);
     if (level_ && request.start.size() > 0) warm_ = level_->reach(problem.set.reduction.gamma(request.start));
     if (program_.program.variables() > slsqp_limit) starts_ = (starts_ + 3) / 4;
-    // The best orbit may lie in any piece of the level.
-    if (level_) starts_ = std::max(starts_, std::min(level_->pieces(), most_pieces));
     if (!known) return;
     unaided_.usable = unaided_.known = true;
     unaided_.candidate = *known;
@@ -150,7 +151,7 @@ void Search::settle() {
     }
     if (value == -infinity) return;
     for (Best* one : {&ipopt_, &nlopt_, &unaided_}) {
-        if (one->usable) set_bound(program_.program.objective(program_.point(one->candidate.gamma)), value, one->optimality);
+        if (one->usable && !one->known) set_bound(program_.program.objective(program_.point(one->candidate.gamma)), value, one->optimality);
     }
 }
 
@@ -200,9 +201,7 @@ Best Search::found(const Polished& polished, const char* method) const {
     result.candidate = {program_.gamma(polished.x), method};
     result.rank = goal_.rank(result.candidate.gamma);
     result.optimality.kkt_residual = polished.multipliers.residual;
-    if (polished.stationary && std::isfinite(polished.lower_bound)) {
-        set_bound(polished.objective, polished.lower_bound, result.optimality);
-    }
+    set_bound(polished.objective, polished.stationary ? polished.lower_bound : 0.0, result.optimality);
     return result;
 }
 
@@ -226,16 +225,16 @@ std::optional<Best> Search::segment() {
 // `objective` and `bound` in the scale of the program.
 void Search::set_bound(double objective, double bound, Optimality& result) const {
     // Rounding may put a tight bound just above the value it bounds; one further above bounds nothing.
-    if (bound > objective + bound_rounding * std::abs(objective)) return;
-    bound = std::min(bound, objective);
-    if (program_.objective_unit > 0) result.lower_bound = bound * program_.objective_unit;
-    result.gap = objective != 0 ? (objective - bound) / std::abs(objective) : 0.0;
+    const double floor = floor_ / program_.objective_unit;
+    if (bound > objective + bound_rounding * std::max(std::abs(objective), floor)) return;
+    bound = std::min(std::max(bound, 0.0), std::max(objective, 0.0));  // no objective at a level is below zero
+    result.lower_bound = bound * program_.objective_unit;
+    result.gap = std::max(objective - bound, 0.0) / std::max(std::abs(objective), floor);
     result.global = result.gap <= options_.agreement_tolerance;
 }
 
 double Search::difference(const Best& a, const Best& b) const {
-    const double scale = std::max(std::abs(a.rank), std::abs(b.rank));
-    return scale > 0 ? std::abs(a.rank - b.rank) / scale : 0.0;
+    return std::abs(a.rank - b.rank) / std::max({std::abs(a.rank), std::abs(b.rank), floor_});
 }
 
 // The lower objective; of those that agree, the closed form, else the one that is proved.

@@ -83,6 +83,7 @@ private:
     IpoptSolver& ipopt_solver_;
     const PatternProblem& problem_;
     const Goal& goal_;
+    double floor_;
     OrbitProgram program_;
     std::optional<LevelPoints> level_;
     std::optional<Eigen::VectorXd> warm_;  // on the level, from an orbit at another

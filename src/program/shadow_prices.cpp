@@ -100,7 +100,7 @@ const std::string& OptimumSensitivity::refusal() const {
 }
 double OptimumSensitivity::value() const { return branches_.front()->value; }
 const Eigen::VectorXd& OptimumSensitivity::beta() const { return branches_.front()->beta; }
-int OptimumSensitivity::tied() const { return static_cast<int>(branches_.size()); }
+int OptimumSensitivity::tied() const { return too_many_.empty() ? static_cast<int>(branches_.size()) : 0; }
 std::optional<double> OptimumSensitivity::kkt_residual() const { return branches_.front()->kkt_residual; }
 std::optional<double> OptimumSensitivity::euler_defect() const { return branches_.front()->euler_defect(); }
 

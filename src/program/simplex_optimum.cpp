@@ -192,6 +192,11 @@ VectorXd least_peak_point(const SimplexLevel& level) {
     if (level.sum == 0) return VectorXd::Constant(level.size, std::sqrt(level.square / n));
     const double square = level.square / (level.sum * level.sum);
     // k entries t and one 1 - k t: k t^2 + (1 - k t)^2 = square in [1/(k + 1), 1/k].
+    const double whole = std::round(1.0 / square);
+    // As many equal entries as that and no rest, but for rounding, whose root would show.
+    if (std::abs(whole * square - 1) <= 1e-14 && whole >= 1 && whole <= n) {
+        return level.sum * in_the_middle(VectorXd::Constant(static_cast<Index>(whole), 1.0 / whole), level.size);
+    }
     const double k = std::clamp(std::floor(1.0 / square), 1.0, n);
     if (k == n) return VectorXd::Constant(level.size, level.sum / n);
     const double t = (k + std::sqrt(std::max(k * ((k + 1) * square - 1), 0.0))) / (k * (k + 1));
@@ -203,10 +208,9 @@ VectorXd least_peak_point(const SimplexLevel& level) {
 double shock_closure(const Kernel& kernel, const Reduction& reduction) {
     if (reduction.variables() != kernel.classes) return 0;
     const int period = kernel.pattern.period_steps();
-    const int flips = reduction.flip.front() * reduction.flip.back();
-    int sum = 0;  // over the rounds, of the product of the last wave of one and the first of the next
+    int sum = 0;  // over the rounds, of the product of the last wave of one and the first of the next; all classes flip alike
     for (int n = kernel.classes - 1; n < period; n += kernel.classes) {
-        sum += flips * kernel.sign[static_cast<std::size_t>(n)] * kernel.sign[static_cast<std::size_t>((n + 1) % period)];
+        sum += kernel.sign[static_cast<std::size_t>(n)] * kernel.sign[static_cast<std::size_t>((n + 1) % period)];
     }
     return static_cast<double>(sum) / (period / kernel.classes);
 }

@@ -72,7 +72,7 @@ std::string optima_text(const Scene& scene, const SensitivityRecords& records) {
     for (const auto& record : records.optima) {
         text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", pattern_fields(scene, record.orbit.kernel.pattern),
                             csv_number(record.level), csv_number(energy(record.orbit)), name(record.objective),
-                            csv_number(record.value), record.global, record.nondegenerate, record.tied,
+                            csv_number(record.value), record.global, record.nondegenerate, record.tied > 0 ? std::to_string(record.tied) : std::string(),
                             csv_number(record.kkt_residual), csv_number(record.euler_defect), csv_text(record.refusal));
     }
     return text;

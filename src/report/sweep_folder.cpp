@@ -120,9 +120,13 @@ void SweepFolder::pattern(const PatternRecord& record) {
         write(timings_, row);
 }
 
-void SweepFolder::answer(const OrbitAnswer& answer) {
-    write(levels_, levels_csv_row(bar_, answer));
-    if (answer.orbit) write(orbits_, orbit_json(answer, bar_, false, -1));
+void SweepFolder::answer(const OrbitAnswer& answer) { this->answer(answer, false); }
+
+void SweepFolder::answer(const OrbitAnswer& answer, bool only_times) {
+    if (!only_times) {
+        write(levels_, levels_csv_row(bar_, answer));
+        if (answer.orbit) write(orbits_, orbit_json(answer, bar_, false, -1));
+    }
     for (const std::string& row : timings_csv_rows(answer))
         write(timings_, row);
 }

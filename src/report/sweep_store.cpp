@@ -1,13 +1,13 @@
 #include "nsma/report/sweep_store.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <iterator>
-#include <map>
 #include <optional>
+#include <set>
 #include <thread>
-#include <tuple>
 #include <utility>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -424,22 +424,21 @@ bool SweepStore::beside_complete() const {
 
 namespace {
 
-// The motions of the answers so far, by level and least label.
+// The motions of the answers so far, by level.
 class SeenMotions {
 public:
     // Whether an answer at this place came before with the same motion; if not, it is one from now on.
     bool before(const OrbitAnswer& answer, int place) {
-        if (!answer.orbit) return false;
-        auto motion = least_label(*answer.orbit);
+        const auto motion = answer.orbit ? least_label(*answer.orbit) : std::nullopt;
         if (!motion) return false;
-        auto& others = motions_[{place, motion->label.free_steps, motion->label.contact_steps}];
-        const bool known = std::any_of(others.begin(), others.end(), [&](const LabelledMotion& other) { return same_motion(*motion, other); });
-        if (!known) others.push_back(std::move(*motion));
+        bool known = false;
+        const auto numbers = fingerprints(*motion);
+        for (std::size_t grid = 0; grid < numbers.size(); ++grid) known = !seen_.at(grid).emplace(place, numbers.at(grid)).second || known;
         return known;
     }
 
 private:
-    std::map<std::tuple<int, int, int>, std::vector<LabelledMotion>> motions_;
+    std::array<std::set<std::pair<int, std::uint64_t>>, 2> seen_;
 };
 
 }  // namespace
@@ -458,7 +457,7 @@ Exported export_sweep(const SweepStore& store, const fs::path& folder, bool dist
             count(summary, *result.answer, result.place > 0);
             const bool copy = seen.before(*result.answer, result.place);
             if (copy && result.place > 0) ++summary.copies;
-            if (files && !(copy && distinct)) files->answer(*result.answer);
+            if (files) files->answer(*result.answer, copy && distinct);
         }
     });
     summary.seconds = store.seconds();

@@ -112,7 +112,7 @@ private:
         for (const auto& level : levels) {
             if (!keep_going_()) break;
             wanted.level = level;
-            wanted.objective = level ? scene_.objective : Objective::min_energy;
+            wanted.objective = level || scene_.objective == Objective::max_energy ? scene_.objective : Objective::min_energy;
             wanted.reference = wanted.objective == Objective::nearest ? before : Eigen::VectorXd();
             const OrbitAnswer answer = solver_.solve(scene_.bar, problem, wanted);
             if (answer.verdict == Verdict::failed) ++summary_.failed;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "nsma/orbit/backbone.hpp"
+#include "nsma/program/admissible_set.hpp"
 #include "nsma/program/relaxed_solver.hpp"
 #include "nsma/study/sensitivity.hpp"
 
@@ -66,11 +67,18 @@ double unit_of(Parameter parameter, const Bar& bar) {
 OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objective,
                              std::optional<double> level, const Eigen::VectorXd& reference) {
     const RelaxedSet set = relaxed_set(orbit.kernel, gap_sign);
-    const OptimumSensitivity optimum(set, level ? objective : Objective::min_energy, level, orbit.beta,
-                                     OptimumSensitivity::Options{}, reference);
+    const Objective asked = level || objective == Objective::max_energy ? objective : Objective::min_energy;
+    std::vector<Eigen::VectorXd> ties;
+    if (asked == Objective::max_energy) {
+        const AdmissibleSet known = admissible_set(reduce(conditions(orbit.kernel, gap_sign)));
+        for (const auto& vertex : known.vertices) {
+            if (known.energy(vertex) >= known.energy(known.vertices.front()) * (1 - tie_tolerance)) ties.push_back(known.reduction.beta(vertex));
+        }
+    }
+    const OptimumSensitivity optimum(set, asked, level, orbit.beta, OptimumSensitivity::Options{}, reference, ties);
     OptimumRecord record;
     record.orbit = orbit;
-    record.objective = level ? objective : Objective::min_energy;
+    record.objective = asked;
     record.level = level;
     record.value = optimum.value();
     record.nondegenerate = optimum.nondegenerate();

@@ -27,6 +27,15 @@ Orbit orbit_of(const Pattern& pattern, const VectorXd& beta, double gap = 1.0) {
     return nsma::make_orbit(bar_with_gap(gap), nsma::exact_kernel(pattern), beta);
 }
 
+bool same_motion(const LabelledMotion& a, const LabelledMotion& b) {
+    const auto one = nsma::fingerprints(a), other = nsma::fingerprints(b);
+    const bool shared = one[0] == other[0] || one[1] == other[1];
+    bool equal = a.label.free_steps == b.label.free_steps && a.label.contact_steps == b.label.contact_steps;
+    for (std::size_t n = 0; equal && n < a.waves.size(); ++n) equal = std::abs(a.waves[n] - b.waves[n]) <= 1e-9;  // waves of order one
+    EXPECT_EQ(equal, shared);
+    return equal;
+}
+
 // The orbit of a pattern with these waves b_n dt/u, if they are in its kernel.
 std::optional<Orbit> with_waves(const Pattern& pattern, double gap, const std::vector<double>& waves) {
     const auto kernel = nsma::exact_kernel(pattern);
@@ -60,7 +69,7 @@ TEST(MotionLabel, AFreeVibrationLabelledWithItsPeriodsManyTimesOver) {
         const auto other = least_label(orbit_of(pattern, VectorXd::Constant(1, -1.0)));
         ASSERT_TRUE(other);
         EXPECT_EQ(other->label, one->label);
-        EXPECT_TRUE(nsma::same_motion(*one, *other));
+        EXPECT_TRUE(same_motion(*one, *other));
     }
 }
 
@@ -102,7 +111,7 @@ TEST(MotionLabel, IsTheSameForEveryLabelShiftAndReversal) {
                 EXPECT_NEAR(nsma::energy_ratio(*again), nsma::energy_ratio(orbit), 1e-12 * nsma::energy_ratio(orbit));  // same sums
                 const auto own = least_label(*again);
                 ASSERT_TRUE(own);
-                EXPECT_TRUE(nsma::same_motion(*own, *motion));
+                EXPECT_TRUE(same_motion(*own, *motion));
                 EXPECT_EQ(own->label.shift_steps, 0);
                 EXPECT_FALSE(own->label.reversed);
                 EXPECT_LE(least.period_steps(), pattern.period_steps());
@@ -121,7 +130,7 @@ TEST(MotionLabel, IsTheSameForEveryLabelShiftAndReversal) {
                 ASSERT_TRUE(nsma::replay(*mirror).accepted);
                 const auto mirrored = least_label(*mirror);
                 ASSERT_TRUE(mirrored);
-                EXPECT_TRUE(nsma::same_motion(*mirrored, *motion));
+                EXPECT_TRUE(same_motion(*mirrored, *motion));
                 if (mirrored->label.reversed != motion->label.reversed) ++reversed;
             }
         }
@@ -140,8 +149,8 @@ TEST(MotionLabel, OtherMotionsAreOther) {
     const auto one = least_label(orbit_of({6, 16, 4}, a));
     const auto other = least_label(orbit_of({6, 16, 4}, b));
     ASSERT_TRUE(one && other);
-    EXPECT_FALSE(nsma::same_motion(*one, *other));
-    EXPECT_TRUE(nsma::same_motion(*one, *one));
+    EXPECT_FALSE(same_motion(*one, *other));
+    EXPECT_TRUE(same_motion(*one, *one));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -29,7 +31,8 @@ struct LabelledMotion {
 /// Zero and equal mean within `tolerance` of the largest wave, or of the displacement scale. Absent for rest.
 [[nodiscard]] std::optional<LabelledMotion> least_label(const Orbit& orbit, double tolerance = 1e-9);
 
-/// Whether two motions of one bar are the same up to a shift in time and a reversal.
-[[nodiscard]] bool same_motion(const LabelledMotion& a, const LabelledMotion& b, double tolerance = 1e-9);
+/// Numbers for the label and the waves, rounded to 1e-7 of the largest on two grids half a step apart: a motion shares at
+/// least one of them with itself under any label, shift or reversal, and with no other that differs by more than that.
+[[nodiscard]] std::array<std::uint64_t, 2> fingerprints(const LabelledMotion& motion);
 
 }  // namespace nsma

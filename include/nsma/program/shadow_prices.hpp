@@ -73,7 +73,7 @@ public:
     [[nodiscard]] double value() const;                  ///< objective, as reported
     [[nodiscard]] const Eigen::VectorXd& beta() const;   ///< polished
     [[nodiscard]] bool nondegenerate() const;  ///< independent active rows, positive multipliers
-    [[nodiscard]] int tied() const;            ///< number of optima of this value, this one included
+    [[nodiscard]] int tied() const;            ///< optima of this value that symmetries give, this one included; 0: too many
     [[nodiscard]] std::vector<int> active_rows() const;  ///< of the set
     /// Relative to 1 + |grad f|, scaled; absent where there are no multipliers.
     [[nodiscard]] std::optional<double> kkt_residual() const;

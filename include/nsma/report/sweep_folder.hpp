@@ -36,6 +36,7 @@ public:
 
     void pattern(const PatternRecord& record) override;
     void answer(const OrbitAnswer& answer) override;
+    void answer(const OrbitAnswer& answer, bool only_times);  ///< only its rows of timings.csv
     void progress(long done, long total) override;  ///< does nothing
 
     /// Writes the summary and puts the files in place; returns one line for the user. An

@@ -51,7 +51,7 @@ struct OptimumRecord {
     double value = 0;                              ///< nondimensional objective
     bool global = false;                           ///< proved to be the best orbit
     bool nondegenerate = false;
-    int tied = 1;                                  ///< optima of this value, this one included
+    int tied = 1;                                  ///< optima of this value that symmetries give, this one included; 0: too many
     std::string refusal;                           ///< nothing can be said: why
     std::optional<double> kkt_residual;             ///< relative; absent without multipliers
     std::optional<double> euler_defect;            ///< relative
