@@ -81,12 +81,12 @@ Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
         };
         chart.data += fmt::format("\n\n# tip-{}\n", i + 1);
         for (Eigen::Index n = 0; n < tip.size(); ++n) {
-            add(n, tip(n), n > 0 && n < pattern.free_steps && (n + every / 2) % every == 0);
+            add(n, tip(n) + 0.0, n > 0 && n < pattern.free_steps && (n + every / 2) % every == 0);
         }
         chart.data += fmt::format("\n\n# force-{}\n", i + 1);
         for (Eigen::Index n = 0; n < push.size(); ++n) {  // constant during a step
-            add(n, push(n), n == middle);
-            add(n + 1, push(n), false);
+            add(n, push(n) + 0.0, n == middle);
+            add(n + 1, push(n) + 0.0, false);
         }
         const auto curve = [&](const char* quantity) {
             const std::string source = fmt::format("'orbits.dat' index '{}-{}'", quantity, i + 1);
@@ -186,7 +186,7 @@ Chart space_time_chart(const StoredSweep& sweep, const StoredOrbit& stored) {
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
             chart.data +=
-                fmt::format("{}{:.5g}", column == 0 ? "" : " ", stress(row, column) * unit.factor);
+                fmt::format("{}{:.5g}", column == 0 ? "" : " ", stress(row, column) * unit.factor + 0.0);
         }
         chart.data += '\n';
     }

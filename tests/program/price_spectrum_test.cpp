@@ -1,6 +1,6 @@
 // Slopes of whole small spectra against programs written down and solved anew: the scheme's own rows, SLSQP from every copy
 // of the optimum and from elsewhere, right-hand sides moved both ways. Shares nothing with the prices but the pattern.
-// NSMA_LONG_TESTS=1 in the environment takes every row of every optimum up to N = 6.
+// NSMA_LONG_TESTS=1 in the environment takes every optimum up to N = 8.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -51,17 +51,14 @@ Moved moved_by(const Price& price, const Pattern& pattern, double t) {
 }
 
 struct Tally {
-    int optima = 0, tied = 0, refused = 0, compared = 0, roots = 0, nowhere = 0;
+    int optima = 0, tied = 0, compared = 0, roots = 0;
     double worst = 0;
 };
 
-void compare(const nsma::OptimumRecord& record, int gap_sign, const VectorXd& reference, bool all_rows, Tally& tally) {
+void compare(const nsma::OptimumRecord& record, int gap_sign, const VectorXd& reference, Tally& tally) {
     ++tally.optima;
     if (record.tied > 1) ++tally.tied;
-    if (!record.refusal.empty()) {
-        ++tally.refused;
-        return;
-    }
+    ASSERT_TRUE(record.refusal.empty()) << record.refusal;
     const Pattern& pattern = record.orbit.kernel.pattern;
     const literal::Program program(pattern, gap_sign, record.objective, reference);
     VectorXd signs = VectorXd::Ones(program.dimension());
@@ -74,10 +71,7 @@ void compare(const nsma::OptimumRecord& record, int gap_sign, const VectorXd& re
     const double level = *record.level;
     const double here = program.least(level, {}, starts);
     ASSERT_NEAR(here, record.value, 1e-7 * (record.value + 1e-3 * level)) << "the optimum itself";
-    int rows = 0;
     for (const Price& price : record.prices) {
-        const bool row = price.parameter == Parameter::cond1_row || price.parameter == Parameter::cond3_row;
-        if (row && !all_rows && (rows++ % 3 != 0)) continue;
         // Energies move by a share of the level, lengths and forces by one of theirs.
         const double unit = price.parameter == Parameter::energy ? level : price.parameter == Parameter::cond3_row || price.parameter == Parameter::adhesion ? std::sqrt(level) : gap_sign == 0 ? std::sqrt(level) : 1.0;
         for (const double side : {1.0, -1.0}) {
@@ -85,7 +79,10 @@ void compare(const nsma::OptimumRecord& record, int gap_sign, const VectorXd& re
             const auto& root = side > 0 ? price.slope.right_root : price.slope.left_root;
             if (root) ++tally.roots;
             if (!finite) {
-                if (!root) ++tally.nowhere;
+                // A band has no negative width, and no other condition has a side without a value.
+                if (!root) {
+                    EXPECT_TRUE(price.parameter == Parameter::band && side < 0) << nsma::name(price.parameter);
+                }
                 continue;
             }
             const double h = 2e-4 * unit;
@@ -109,7 +106,7 @@ void compare(const nsma::OptimumRecord& record, int gap_sign, const VectorXd& re
             const double error = std::abs(*finite - slope) / size;
             tally.worst = std::max(tally.worst, error);
             ++tally.compared;
-            EXPECT_LT(error, 5e-3) << where << ": " << *finite << " against " << slope;
+            EXPECT_LT(error, 1e-3) << where << ": " << *finite << " against " << slope;
         }
     }
 }
@@ -117,9 +114,9 @@ void compare(const nsma::OptimumRecord& record, int gap_sign, const VectorXd& re
 TEST(PriceSpectrum, EverySlopeIsThatOfTheProgramsSolvedAnew) {
     const bool longer = std::getenv("NSMA_LONG_TESTS") != nullptr;
 #ifdef __SANITIZE_ADDRESS__
-    const int most = longer ? 6 : 3;
+    const int most = longer ? 6 : 4;
 #else
-    const int most = longer ? 8 : 5;
+    const int most = longer ? 8 : 6;
 #endif
     Tally tally;
     nsma::OrbitSolver solver;
@@ -143,17 +140,16 @@ TEST(PriceSpectrum, EverySlopeIsThatOfTheProgramsSolvedAnew) {
                         const auto answer = solver.solve(bar, problem, request);
                         ASSERT_TRUE(answer.orbit) << answer.reason;
                         const auto record = nsma::optimum_record(*answer.orbit, gap_sign, objective, level, answer.reference);
-                        compare(record, gap_sign, answer.reference, longer, tally);
+                        compare(record, gap_sign, answer.reference, tally);
                     }
                 }
             }
         }
     }
-    std::printf("%d optima, %d tied, %d refused; %d slopes compared, worst %.1e, %d roots, %d without a slope\n", tally.optima,
-                tally.tied, tally.refused, tally.compared, tally.worst, tally.roots, tally.nowhere);
+    std::printf("%d optima, %d tied; %d slopes compared, worst %.1e, %d roots\n", tally.optima, tally.tied, tally.compared,
+                tally.worst, tally.roots);
     EXPECT_GT(tally.compared, longer ? 5'000 : 200);
     EXPECT_GT(tally.tied, 10);
-    EXPECT_LT(tally.refused, tally.optima / 4);
 }
 
 // Greatest energies of sets with every right-hand side moved, by trying every choice of rows that can meet in a vertex.
