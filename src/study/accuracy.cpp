@@ -11,8 +11,8 @@
 namespace nsma {
 namespace {
 
-// Levels of the programs: at these the best objective is proved at every size, at the first two by
-// the Lagrangian (no amplitude is zero), at the last by products (all but two are zero).
+// Levels of the programs: at the first two no amplitude is zero and a polished answer is proved by the Lagrangian, at the
+// last all but two are zero and only the closed form proves it.
 constexpr double levels_of_least[] = {1.1, 1.3};    // times E_min
 constexpr double levels_of_greatest[] = {0.8};      // times E_max
 // Beyond this size a derivative-free method only meets its limit.

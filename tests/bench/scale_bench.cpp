@@ -47,7 +47,7 @@ void sieve(benchmark::State& state) {
 }
 BENCHMARK(sieve)->Arg(125)->Arg(250)->Arg(500)->Arg(1000)->Unit(benchmark::kMillisecond);
 
-// Verdict and energy interval of each of them that the sieve leaves by linear program; of each with an exact proof.
+// Verdict and energy interval of each of them that the sieve leaves; of each with an exact proof.
 void scan_all(benchmark::State& state, ScanMethod method) {
     Scene scene;
     scene.mesh.cells = static_cast<int>(state.range(0));

@@ -217,7 +217,7 @@ TEST(Polish, LeavesASaddle) {
     }
     const auto polished = polish(program.program, program.point(gamma));
     EXPECT_TRUE(polished.stationary);
-    EXPECT_NEAR(polished.objective * program.objective_unit, 2 * 10 * 8 * (3 * 0.8 - 1), 1e-9 * 224);  // conic_bound_test
+    EXPECT_NEAR(polished.objective * program.objective_unit, 2 * 10 * 8 * (3 * 0.8 - 1), 1e-9 * 224);  // two neighbours, 8 runs a period
 }
 
 TEST(Polish, ComesToTheOptimumCloseToTheLeastEnergy) {

@@ -160,7 +160,8 @@ TEST(Accuracy, ReferencesAreProvedAtEverySizeAndProofFirstComesToThem) {
                 EXPECT_TRUE(trial.certified) << size << ' ' << level;
             }
         }
-        // Two amplitudes are left at 0.8 E_max: 2N R (3 q - 1) with R = 8 runs a period; derived in conic_bound_test.cpp.
+        // Two neighbours are left at 0.8 E_max: x + y = 1, x^2 + y^2 = q, and a run costs x^2 + y^2 + (x - y)^2 = 3 q - 1,
+        // so 2N R (3 q - 1) with R = 8 runs a period.
         if (size == 2) continue;  // they are neighbours on both sides there
         const nsma::ProgramCase top(bar, problem, nsma::Objective::least_shock, 0.8 * *problem.interval.greatest);
         const double exact = 2.0 * (2.5 * size) * 8.0 * (3.0 * 0.8 - 1.0);
