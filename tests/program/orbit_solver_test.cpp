@@ -263,6 +263,26 @@ TEST(OrbitSolver, UnitsChangeNothingButUnits) {
     EXPECT_NEAR(nsma::energy(*rod.orbit), *request.level * joule, 1e-12 * *request.level * joule);
 }
 
+// A level asked for twice with `nearest`, and a closed gap's levels: the optimum is at distance 0, where only an absolute
+// comparison of two objectives has a meaning.
+TEST(OrbitSolver, BothSolversAgreeAtDistanceZero) {
+    for (const auto& [pattern, gap] : {std::pair{Pattern{6, 16, 4}, 1.0}, {Pattern{8, 4, 4}, -1.0}, {Pattern{6, 10, 8}, 0.0}}) {
+        const Bar bar = bar_with_gap(gap);
+        const auto problem = pattern_problem(pattern, bar.gap_sign());
+        ASSERT_EQ(problem.verdict, Verdict::admissible);
+        const double level = gap == 0 ? 3.0 : 0.5 * (*problem.interval.least + *problem.interval.greatest);
+        const auto first = solve(pattern, gap, {level, Objective::least_shock, {}, {}});
+        ASSERT_TRUE(first.orbit);
+        const auto answer = solve(pattern, gap, {level, Objective::nearest, nsma::reference_window(*first.orbit), {}});
+        expect_sound(answer);
+        EXPECT_NEAR(*answer.objective_value, 0.0, 1e-12 * level);  // rounding of amplitudes of that energy
+        EXPECT_EQ(answer.agreement, Agreement::agree) << answer.reason;
+        ASSERT_TRUE(answer.optimality);
+        EXPECT_TRUE(answer.optimality->global);
+        EXPECT_GE(answer.optimality->lower_bound, 0.0);
+    }
+}
+
 TEST(OrbitSolver, OneSolverAlone) {
     const Pattern pattern{20, 48, 16};
     const OrbitRequest request{.level = 1.5 * least_energy(pattern, 1), .reference = {}};
@@ -413,6 +433,8 @@ TEST(OrbitSolver, Misuse) {
     // A level at an end of the interval takes another way: the same word.
     wrong.level = *problem.set.interval().greatest;
     EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem, wrong), std::invalid_argument);
+    // An extreme of the energy has no level.
+    EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem, {.level = 12.0, .objective = Objective::max_energy, .reference = {}}), std::invalid_argument);
     EXPECT_THROW((void)pattern_problem({0, 1, 1}, 1), std::invalid_argument);
     EXPECT_THROW((void)pattern_problem({6, 0, 4}, 1), std::invalid_argument);
     OrbitSolverOptions options;
