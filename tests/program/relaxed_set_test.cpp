@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "time_reversed.hpp"
+
 #include "nsma/program/admissible_set.hpp"
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/reduction.hpp"
@@ -116,12 +118,12 @@ TEST(RelaxedSet, TimeReversalKeepsEverything) {
     std::mt19937 random(6);
     for (const auto& kernel : live_kernels(6)) {
         const Eigen::VectorXd beta = drawn(kernel.dimension(), random);
-        const Eigen::VectorXd back = nsma::time_reversed(kernel, beta);
+        const Eigen::VectorXd back = time_reversed(kernel, beta);
         const Eigen::VectorXd tip = nsma::tip_history(kernel, beta);
         const Eigen::VectorXd reversed = nsma::tip_history(kernel, back);
         const int r = kernel.pattern.free_steps;
         for (int n = 0; n <= r; ++n) EXPECT_NEAR(reversed[n], tip[r - n], 1e-12 * (1 + tip.norm()));
-        EXPECT_LT((nsma::time_reversed(kernel, back) - beta).norm(), 1e-14);
+        EXPECT_LT((time_reversed(kernel, back) - beta).norm(), 1e-14);
         for (const auto objective : {Objective::least_shock, Objective::least_force, Objective::min_energy}) {
             const double here = nsma::objective_of_waves(kernel, objective, beta);
             EXPECT_NEAR(nsma::objective_of_waves(kernel, objective, back), here, 1e-12 * (1 + here));

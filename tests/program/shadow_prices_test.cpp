@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "time_reversed.hpp"
+
 #include "nsma/program/orbit_program.hpp"
 #include "nsma/program/orbit_solver.hpp"
 #include "nsma/program/relaxed_solver.hpp"
@@ -135,7 +137,7 @@ std::optional<Resolved> resolve(const Subject& subject, const Shift& shift) {
     ties.push_back(result.beta);
     for (const auto& beta : ties) {
         result.held.push_back(held_rows(set, beta, shift));
-        result.held.push_back(held_rows(set, nsma::time_reversed(set.kernel, beta), shift));
+        result.held.push_back(held_rows(set, time_reversed(set.kernel, beta), shift));
     }
     return result;
 }

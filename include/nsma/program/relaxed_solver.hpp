@@ -52,8 +52,4 @@ struct RelaxedRequest {
 [[nodiscard]] RelaxedOptimum relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& interval,
                                              const RelaxedRequest& request);
 
-/// The same motion run backwards: beta' with b'_n = -b_{r-1-n} in flight and b_{n_T+r-1-n} in
-/// contact. It meets the same conditions with the same energy, shock and force.
-[[nodiscard]] Eigen::VectorXd time_reversed(const Kernel& kernel, const Eigen::VectorXd& beta);
-
 }  // namespace nsma
