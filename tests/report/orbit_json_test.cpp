@@ -26,6 +26,13 @@ OrbitAnswer answer_of(const Bar& bar) {
     return answer;
 }
 
+TEST(OrbitJson, ZerosHaveNoSign) {
+    OrbitAnswer answer = answer_of(Bar{});
+    answer.objective_value = -0.0;
+    answer.orbit->beta *= -0.0;
+    EXPECT_EQ(orbit_json(answer, Bar{}).find("-0.0"), std::string::npos);
+}
+
 TEST(OrbitJson, HasEveryAgreedField) {
     const Json json = Json::parse(orbit_json(answer_of(Bar{}), Bar{}));
     for (const char* key : {"cells",
