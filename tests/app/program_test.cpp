@@ -520,6 +520,10 @@ TEST_F(Program, FreeAndStuckPatternsAreLeftUnlessAskedFor) {
     for (const auto& row : rows_of("distinct")) EXPECT_NE(contents(folder_ / "contact" / "levels.csv").find(row), std::string::npos);
     EXPECT_EQ(run({"export", (folder_ / "contact").string(), "--distinct"}).exit_code, 0);
     EXPECT_EQ(contents(folder_ / "contact" / "levels.csv"), contents(folder_ / "distinct" / "levels.csv"));
+    // The orbit of least energy has its row, and its level another, though they are one motion.
+    const std::string twice = write("twice.toml", scene_text("1.0", "20", "list = [[60, 10]]", "[4.0]"));
+    EXPECT_EQ(run({"sweep", twice, "--out", (folder_ / "twice").string(), "--distinct", "--quiet"}).exit_code, 0);
+    EXPECT_EQ(rows_of("twice").size(), 2U);
 
     // The scene may ask as well; another choice is another sweep.
     const std::string asking = write("asking.toml", scene_text("1.0", "6", "period = [0.0, 4.0]\nkinds = \"all\"", "[1.6, 12.0]"));
