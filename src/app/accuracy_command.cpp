@@ -3,9 +3,9 @@
 #include "commands.hpp"
 #include "progress.hpp"
 
-#include "nsma/report/accuracy_folder.hpp"
+#include "report/accuracy/accuracy_folder.hpp"
 #include "nsma/report/scene_file.hpp"
-#include "nsma/study/accuracy.hpp"
+#include "study/accuracy/accuracy.hpp"
 
 namespace nsma::app {
 namespace {

@@ -1,4 +1,5 @@
 #include "command_line.hpp"
+#include "numerics/solver.hpp"
 
 #include <array>
 #include <cmath>
@@ -6,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "nsma/program/linear_program.hpp"
+#include "numerics/linear_program.hpp"
 #include "nsma/report/scene_file.hpp"
 
 namespace nsma::app {

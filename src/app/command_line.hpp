@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "nsma/program/orbit_solver.hpp"
+#include "nsma/search/orbit_solver.hpp"
 #include "nsma/study/scan.hpp"
 
 namespace nsma::app {

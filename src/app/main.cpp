@@ -4,10 +4,13 @@
 #include <exception>
 #include <variant>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "commands.hpp"
 #include "crew.hpp"
 
-#include "nsma/program/solver.hpp"
 #include "nsma/report/scene_file.hpp"
 
 namespace {
@@ -23,6 +26,17 @@ extern "C" void on_interrupt(int signal) {
     }
 }
 
+// Keeps memory that was freed: Ipopt's linear solver takes and gives back its own in every iteration, NLopt's L-BFGS in
+// every call, and fresh pages take longer than their work.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int kept = 64 << 20;  // bytes
+    mallopt(M_TRIM_THRESHOLD, kept);
+    mallopt(M_TOP_PAD, kept / 4);
+    mallopt(M_MMAP_THRESHOLD, kept / 2);  // a block of its own would go back when freed
+#endif
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -30,7 +44,7 @@ int main(int count, char** words) {
     std::signal(SIGTERM, on_interrupt);
     std::signal(SIGUSR1, on_interrupt);  // mpirun hands it on to its ranks; a SIGTERM it follows with SIGKILL
     std::signal(SIGPIPE, SIG_IGN);
-    nsma::keep_freed_memory();
+    keep_freed_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error like a full disk
     try {
         const auto arguments = nsma::app::parse(count, words);

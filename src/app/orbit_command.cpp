@@ -4,7 +4,7 @@
 
 #include "nsma/report/orbit_json.hpp"
 #include "nsma/report/scene_file.hpp"
-#include "nsma/report/tables.hpp"
+#include "report/sweep/tables.hpp"
 
 namespace nsma::app {
 namespace {

@@ -7,8 +7,8 @@
 #include "commands.hpp"
 #include "progress.hpp"
 
-#include "nsma/program/orbit_solver.hpp"
-#include "nsma/report/certificate_file.hpp"
+#include "nsma/search/orbit_solver.hpp"
+#include "report/certificate_file.hpp"
 #include "nsma/report/scene_file.hpp"
 
 namespace nsma::app {

@@ -7,7 +7,7 @@
 #include "progress.hpp"
 
 #include "nsma/report/scene_file.hpp"
-#include "nsma/report/tables.hpp"
+#include "report/sweep/tables.hpp"
 #include "nsma/study/scan.hpp"
 
 namespace nsma::app {

@@ -6,8 +6,8 @@
 #include "progress.hpp"
 
 #include "nsma/report/scene_file.hpp"
-#include "nsma/report/sensitivity_folder.hpp"
-#include "nsma/study/sensitivity.hpp"
+#include "report/sensitivity/sensitivity_folder.hpp"
+#include "nsma/study/sensitivity/sensitivity.hpp"
 
 namespace nsma::app {
 namespace {

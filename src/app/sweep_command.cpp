@@ -8,12 +8,12 @@
 #include "crew.hpp"
 #include "progress.hpp"
 
-#include "nsma/report/charts.hpp"
+#include "report/charts.hpp"
 #include "nsma/report/scene_file.hpp"
-#include "nsma/report/sweep_store.hpp"
-#include "nsma/report/tables.hpp"
-#include "nsma/study/sweep_queue.hpp"
-#include "nsma/study/work_messages.hpp"
+#include "report/sweep/sweep_store.hpp"
+#include "report/sweep/tables.hpp"
+#include "study/sweep/sweep_queue.hpp"
+#include "study/sweep/work_messages.hpp"
 
 namespace nsma::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "nsma/report/certificate_file.hpp"
+#include "certificate_file.hpp"
 
 #include <array>
 #include <limits>

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "nsma/report/charts.hpp"
+#include "charts.hpp"
 
 namespace nsma {
 

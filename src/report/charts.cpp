@@ -1,4 +1,4 @@
-#include "nsma/report/charts.hpp"
+#include "charts.hpp"
 
 #include <algorithm>
 #include <array>

@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "nsma/report/charts.hpp"
+#include "charts.hpp"
 #include "one_line.hpp"
 
 extern "C" char** environ;

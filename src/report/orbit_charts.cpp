@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "nsma/report/charts.hpp"
+#include "charts.hpp"
 #include "gnuplot.hpp"
 
 namespace nsma {

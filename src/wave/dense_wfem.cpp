@@ -1,4 +1,4 @@
-#include "nsma/wave/dense_wfem.hpp"
+#include "dense_wfem.hpp"
 
 #include <stdexcept>
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "nsma/wave/wave_queue.hpp"
+#include "wave_queue.hpp"
 
 namespace nsma {
 

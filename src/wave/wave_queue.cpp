@@ -1,4 +1,4 @@
-#include "nsma/wave/wave_queue.hpp"
+#include "wave_queue.hpp"
 
 #include <stdexcept>
 

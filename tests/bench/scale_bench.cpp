@@ -11,18 +11,18 @@
 
 #include <benchmark/benchmark.h>
 
-#include "nsma/orbit/dense_kernel.hpp"
+#include "../orbit/dense_kernel.hpp"
 #include "nsma/orbit/sieve.hpp"
-#include "nsma/program/level_points.hpp"
-#include "nsma/program/orbit_program.hpp"
-#include "nsma/program/orbit_solver.hpp"
-#include "nsma/program/solver.hpp"
-#include "nsma/report/sweep_store.hpp"
-#include "nsma/study/accuracy.hpp"
+#include "set/level_points.hpp"
+#include "search/orbit_program.hpp"
+#include "nsma/search/orbit_solver.hpp"
+#include "numerics/solver.hpp"
+#include "report/sweep/sweep_store.hpp"
+#include "study/accuracy/accuracy.hpp"
 #include "nsma/study/scan.hpp"
-#include "nsma/study/sweep_queue.hpp"
-#include "nsma/study/work_messages.hpp"
-#include "nsma/wave/dense_wfem.hpp"
+#include "study/sweep/sweep_queue.hpp"
+#include "study/sweep/work_messages.hpp"
+#include "wave/dense_wfem.hpp"
 #include "nsma/wave/marcher.hpp"
 
 namespace {

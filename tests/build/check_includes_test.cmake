@@ -8,8 +8,8 @@ function(fresh_tree)
   file(WRITE ${work}/include/nsma/wave/bar.hpp "#include <vector>\n#include <Eigen/Core>\n#include <boost/multiprecision/cpp_int.hpp>\n")
   file(WRITE ${work}/include/nsma/orbit/kernel.hpp "#include \"nsma/wave/bar.hpp\"\n")
   file(WRITE ${work}/src/wave/marcher.cpp "// #include \"nsma/orbit/kernel.hpp\"\n#include \"nsma/wave/bar.hpp\"\n")
-  file(WRITE ${work}/src/program/ipopt.cpp "#include <IpIpoptApplication.hpp>\n#include <IpTNLP.hpp>\n")
-  file(WRITE ${work}/src/program/nlopt.cpp "#include <nlopt.hpp>\n#include \"nsma/orbit/kernel.hpp\"\n")
+  file(WRITE ${work}/src/search/ipopt.cpp "#include <IpIpoptApplication.hpp>\n#include <IpTNLP.hpp>\n")
+  file(WRITE ${work}/src/search/nlopt.cpp "#include <nlopt.hpp>\n#include \"nsma/orbit/kernel.hpp\"\n")
   file(WRITE ${work}/src/app/main.cpp "#include <CLI/CLI.hpp>\n#include <fmt/core.h>\n#include \"nsma/orbit/kernel.hpp\"\n")
 endfunction()
 
@@ -39,10 +39,12 @@ expect(pass "the clean tree")
 
 # Rooms to the right, by public and private headers, from sources and headers.
 expect_fault(src/wave/marcher.cpp "#include \"nsma/orbit/kernel.hpp\"")
-expect_fault(src/wave/marcher.cpp "  # include <nsma/program/answer.hpp>")
+expect_fault(src/wave/marcher.cpp "  # include <nsma/search/answer.hpp>")
+expect_fault(src/numerics/polish.cpp "#include \"nsma/orbit/kernel.hpp\"")
+expect_fault(src/check/check.cpp "#include \"nsma/set/reduction.hpp\"")
 expect_fault(src/wave/mesh.cpp "#include \"../orbit/cycles.hpp\"")
 expect_fault(include/nsma/orbit/orbit.hpp "#include \"nsma/study/scene.hpp\"")
-expect_fault(src/program/presolve.hpp "#include \"nsma/study/scene.hpp\"")
+expect_fault(src/search/presolve.hpp "#include \"nsma/study/scene.hpp\"")
 expect_fault(src/study/sweep.cpp "#include \"nsma/report/chart.hpp\"")
 expect_fault(src/report/chart.cpp "#include \"app/progress.hpp\"")
 
@@ -51,9 +53,9 @@ expect_fault(src/utils/string.cpp "#include <string>")
 expect_fault(include/nsma/everything.hpp "#include \"nsma/wave/bar.hpp\"")
 
 # Solvers and tools in headers, and in a second source.
-expect_fault(src/program/solver.hpp "#include <IpTNLP.hpp>")
-expect_fault(src/program/second.cpp "#include <coin/IpIpoptApplication.hpp>")
-expect_fault(src/program/second.cpp "#include <nlopt.h>")
+expect_fault(src/search/solver.hpp "#include <IpTNLP.hpp>")
+expect_fault(src/search/second.cpp "#include <coin/IpIpoptApplication.hpp>")
+expect_fault(src/search/second.cpp "#include <nlopt.h>")
 expect_fault(src/app/options.cpp "#include <CLI/App.hpp>")
 foreach(header ClpSimplex.hpp coin/ClpSimplex.hpp CoinPackedMatrix.hpp SQLiteCpp/SQLiteCpp.h sqlite3.h mpi.h
                toml++/toml.h toml++/toml.hpp toml.hpp)

@@ -1,11 +1,11 @@
-#include "nsma/orbit/dense_kernel.hpp"
+#include "dense_kernel.hpp"
 
 #include <stdexcept>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "nsma/wave/dense_wfem.hpp"
+#include "wave/dense_wfem.hpp"
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "nsma/wave/dense_wfem.hpp"
-#include "nsma/orbit/dense_kernel.hpp"
+#include "wave/dense_wfem.hpp"
+#include "dense_kernel.hpp"
 
 namespace {
 

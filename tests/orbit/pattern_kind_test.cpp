@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "nsma/wave/dense_wfem.hpp"
+#include "wave/dense_wfem.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nsma/wave/dense_wfem.hpp"
+#include "wave/dense_wfem.hpp"
 #include "nsma/orbit/backbone.hpp"
 #include "nsma/orbit/conditions.hpp"
 

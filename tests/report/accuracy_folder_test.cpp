@@ -1,4 +1,4 @@
-#include "nsma/report/accuracy_folder.hpp"
+#include "report/accuracy/accuracy_folder.hpp"
 
 #include <filesystem>
 #include <fstream>

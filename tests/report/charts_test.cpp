@@ -1,10 +1,10 @@
-#include "nsma/report/charts.hpp"
+#include "report/charts.hpp"
 
 #include <cstdlib>
 
 #include <gmock/gmock.h>
 
-#include "../../src/report/gnuplot.hpp"
+#include "report/gnuplot.hpp"
 #include "sample.hpp"
 
 namespace nsma {

@@ -11,9 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include "../program/truth.hpp"
+#include "../proof/truth.hpp"
 
-#include "nsma/report/certificate_file.hpp"
+#include "report/certificate_file.hpp"
 #include "nsma/report/scene_file.hpp"
 
 namespace {

@@ -10,7 +10,7 @@
 
 #include "nsma/orbit/backbone.hpp"
 #include "nsma/orbit/conditions.hpp"
-#include "nsma/report/sweep_folder.hpp"
+#include "report/sweep/sweep_folder.hpp"
 
 namespace nsma::sample {
 

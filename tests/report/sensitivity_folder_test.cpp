@@ -1,4 +1,4 @@
-#include "nsma/report/sensitivity_folder.hpp"
+#include "report/sensitivity/sensitivity_folder.hpp"
 
 #include <cmath>
 #include <fstream>

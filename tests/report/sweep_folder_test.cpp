@@ -1,4 +1,4 @@
-#include "nsma/report/sweep_folder.hpp"
+#include "report/sweep/sweep_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "nsma/report/sweep_store.hpp"
+#include "report/sweep/sweep_store.hpp"
 
 #include <csignal>
 
@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
-#include "nsma/study/sweep.hpp"
-#include "nsma/study/sweep_queue.hpp"
+#include "../study/run_sweep.hpp"
+#include "study/sweep/sweep_queue.hpp"
 #include "sample.hpp"
 
 namespace nsma {

@@ -1,4 +1,4 @@
-#include "nsma/report/tables.hpp"
+#include "report/sweep/tables.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-#include "../../src/report/csv.hpp"
+#include "report/csv.hpp"
 #include "sample.hpp"
 
 namespace nsma {

@@ -1,4 +1,4 @@
-#include "nsma/study/accuracy.hpp"
+#include "study/accuracy/accuracy.hpp"
 
 #include <map>
 #include <set>
@@ -7,7 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "nsma/orbit/backbone.hpp"
-#include "nsma/study/program_methods.hpp"
+#include "numerics/solver.hpp"
+#include "study/accuracy/program_methods.hpp"
 
 namespace {
 

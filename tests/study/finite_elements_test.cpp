@@ -1,4 +1,4 @@
-#include "nsma/study/finite_elements.hpp"
+#include "study/accuracy/finite_elements.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,11 +1,11 @@
-#include "nsma/study/kernel_methods.hpp"
+#include "study/accuracy/kernel_methods.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "nsma/orbit/dense_kernel.hpp"
+#include "../orbit/dense_kernel.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "nsma/study/record_rows.hpp"
+#include "study/sweep/record_rows.hpp"
 
 #include <gtest/gtest.h>
 

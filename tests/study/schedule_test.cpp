@@ -1,4 +1,4 @@
-#include "nsma/study/schedule.hpp"
+#include "../bench/schedule.hpp"
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-#include "nsma/study/sensitivity.hpp"
+#include "nsma/study/sensitivity/sensitivity.hpp"
 
 #include <array>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nsma/program/relaxed_solver.hpp"
+#include "price/relaxed_solver.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "nsma/study/sweep_queue.hpp"
+#include "study/sweep/sweep_queue.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "nsma/study/sweep.hpp"
+#include "run_sweep.hpp"
 
 #include <algorithm>
 #include <map>

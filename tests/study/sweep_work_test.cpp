@@ -1,4 +1,4 @@
-#include "nsma/study/sweep_work.hpp"
+#include "study/sweep/sweep_work.hpp"
 
 #include <algorithm>
 #include <set>

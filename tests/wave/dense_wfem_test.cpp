@@ -1,4 +1,4 @@
-#include "nsma/wave/dense_wfem.hpp"
+#include "wave/dense_wfem.hpp"
 
 #include <random>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "nsma/wave/wave_queue.hpp"
+#include "wave/wave_queue.hpp"
 
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nsma/wave/dense_wfem.hpp"
+#include "wave/dense_wfem.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "nsma/program/answer.hpp"
+#include "nsma/search/answer.hpp"
 
 namespace nsma {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "nsma/program/answer.hpp"
+#include "nsma/search/answer.hpp"
 
 namespace nsma {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "nsma/orbit/pattern_kind.hpp"
-#include "nsma/program/objective_name.hpp"
+#include "nsma/set/objective.hpp"
 #include "nsma/wave/bar.hpp"
 #include "nsma/wave/mesh.hpp"
 

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nsma/orbit/conditions.hpp"
+#include "nsma/check/certificate.hpp"
+
+namespace nsma {
+
+/// Why a certificate does not hold.
+struct Invalid {
+    std::string reason;
+};
+[[noreturn]] void invalid(std::string reason);
+[[nodiscard]] std::string column_name(int column);
+
+/// What every part of a certificate is checked against: the pattern's signs and COND1-3, as integers, and exact sums of
+/// them. Its functions throw Invalid.
+struct CertificateTerms {
+    using Dense = std::vector<Rational>;
+    using Sign = Conditions::Sign;
+
+    explicit CertificateTerms(const Certificate& of);
+
+    [[nodiscard]] Dense dense(const RationalVector& sparse, const char* what) const;
+    /// sum_n y_n a_n over the columns: step k carries the sum of y_n over n > k.
+    [[nodiscard]] Dense combine_rows(const RationalVector& rows) const;
+    /// form - combination; its positive part on COND3's cone would break the bound.
+    [[nodiscard]] Dense remainder(const Dense& form, const RowCombination& combination) const;
+    /// Proved upper bound of the form over the admissible set.
+    [[nodiscard]] Rational verified(const FormBound& bound) const;
+
+    const Certificate& certificate;
+    Kernel kernel;
+    std::vector<Sign> signs;    ///< of COND3, by column
+    std::size_t dimension;
+    std::vector<int> contact;   ///< w, COND2's row
+    Rational factor;            ///< E/E_unit = factor |beta|^2
+};
+
+/// The upper bound on |beta|^2 that the certificate's chain proves. Throws Invalid.
+[[nodiscard]] Rational proved_square(const CertificateTerms& terms);
+
+}  // namespace nsma

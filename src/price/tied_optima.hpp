@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "nsma/price/relaxed_set.hpp"
+#include "nsma/set/objective.hpp"
+
+namespace nsma {
+
+/// The optima of the same objective value that the symmetries of a program give beside a known one: its time shifts by whole
+/// steps and their reversals that meet COND1-3 of the same pattern and, where the set is a simplex and the objective does
+/// not tell its columns apart, its permutations.
+struct TiedOptima {
+    std::vector<Eigen::VectorXd> others;  ///< beta, without the known one
+    std::string refusal;                  ///< more than can be compared; empty when `others` are all
+};
+
+/// `beta` must meet the conditions of the set. `reference` as for objective_of_waves (`nearest` only).
+[[nodiscard]] TiedOptima tied_optima(const RelaxedSet& set, Objective objective, const Eigen::VectorXd& beta,
+                                     const Eigen::VectorXd& reference = {});
+
+}  // namespace nsma

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/sweep/sweep_folder.hpp"
+
+namespace nsma {
+
+/// One chart: the text of NAME.dat and the gnuplot commands that draw it between `set output`
+/// and its end. The commands name the data file by its bare name.
+struct Chart {
+    std::string name;
+    std::string data;
+    std::string commands;
+    int height = 625;  ///< of the SVG, for a width of 1000; the PNG is 1.6 times that
+};
+
+/// Frequency against energy: exact backbones beneath, linear frequencies dashed, single orbits
+/// as points, energy intervals as lines (an arrow when unbounded), solved levels marked.
+[[nodiscard]] Chart frequency_energy_chart(const StoredSweep& sweep);
+
+/// Orbits worth drawing: three well-separated energies of the lowest nonsmooth mode or, without
+/// any, one orbit of each of the three lowest frequencies; least-energy orbits are preferred.
+struct OrbitChoice {
+    std::vector<const StoredOrbit*> orbits;  ///< by increasing energy, at most three
+    std::string what;                        ///< e.g. "orbits of mode k = 1"
+};
+[[nodiscard]] OrbitChoice choose_orbits(const StoredSweep& sweep);
+
+/// Tip displacement over one period with the wall drawn; contact force on the same time axis.
+[[nodiscard]] Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice);
+
+/// Stress over bar and time for one period, with the contact phase marked at the wall. The waves
+/// are drawn where they are exactly, at several samples a cell.
+[[nodiscard]] Chart space_time_chart(const StoredSweep& sweep, const StoredOrbit& stored);
+
+/// Writes NAME.dat and NAME.gp into `folder` (made if missing) and runs gnuplot there, which
+/// leaves NAME.svg and NAME.png; `gnuplot NAME.gp` in that folder draws it again. Throws
+/// InputError (one line) when the folder cannot be written or gnuplot is missing or fails.
+void draw_chart(const Chart& chart, const std::filesystem::path& folder);
+
+/// Draws every chart of a stored sweep into folder/charts.
+struct DrawnCharts {
+    std::vector<std::filesystem::path> pictures;  ///< the SVG and PNG files
+    std::vector<std::string> skipped;             ///< one line a chart that had nothing to show
+};
+[[nodiscard]] DrawnCharts draw_charts(const std::filesystem::path& sweep_folder);
+
+}  // namespace nsma

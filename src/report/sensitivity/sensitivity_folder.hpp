@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "report/charts.hpp"
+#include "nsma/study/sensitivity/sensitivity.hpp"
+
+namespace nsma {
+
+/// Files of a sensitivity study in its folder, beside scene.toml; columns: data/README.md.
+inline constexpr std::array<const char*, 8> sensitivity_files{
+    "optima.csv",      "prices.csv",   "orbit-derivatives.csv", "intervals.csv",
+    "relaxations.csv", "ablation.csv", "funnel.csv",            "sensitivity.txt"};
+
+/// The six orders in which COND1-3 can be imposed, with the number of patterns left after the
+/// kernel and after each condition.
+struct Funnel {
+    std::array<int, 3> order{};  ///< 1, 2, 3 for COND1, COND2, COND3
+    std::array<int, 4> left{};
+};
+[[nodiscard]] std::vector<Funnel> funnels(const std::vector<AblationRecord>& records);
+
+/// Everything a study found, in the order it came.
+struct SensitivityRecords : SensitivitySink {
+    std::vector<OptimumRecord> optima;
+    std::vector<IntervalRecord> intervals;
+    std::vector<CurveRecord> curves;
+    std::vector<AblationRecord> ablations;
+
+    void optimum(const OptimumRecord& record) override { optima.push_back(record); }
+    void interval(const IntervalRecord& record) override { intervals.push_back(record); }
+    void curve(const CurveRecord& record) override { curves.push_back(record); }
+    void ablation(const AblationRecord& record) override { ablations.push_back(record); }
+    void progress(long, long) override {}
+};
+
+/// Makes the folder and stores the scene in it. Throws InputError (one line) when it cannot be
+/// made or written or holds another scene's results.
+void open_sensitivity_folder(const std::filesystem::path& folder, const Scene& scene);
+
+/// Writes the files; each appears under its name only when it is complete. Throws InputError.
+void write_sensitivity(const std::filesystem::path& folder, const Scene& scene,
+                       const SensitivityRecords& records, const SensitivitySummary& summary);
+
+/// The text of each file; `file` is one of sensitivity_files.
+[[nodiscard]] std::string sensitivity_text(const std::string& file, const Scene& scene,
+                                           const SensitivityRecords& records,
+                                           const SensitivitySummary& summary);
+
+/// Derivative in SI: objective (J; N for least-force) per metre, newton or joule.
+[[nodiscard]] double in_si(double derivative, Objective objective, Parameter parameter, const Bar& bar);
+/// Relative change of the value per relative change of gap or energy; of a parameter that is
+/// zero, per |d| or per Y S |d|/L.
+[[nodiscard]] double elasticity(double derivative, Parameter parameter, double value, int gap_sign,
+                                double level);
+
+/// Where in the motion the wall decides: x_1(t) above, what relaxing each row saves below.
+[[nodiscard]] Chart binding_chart(const Scene& scene, const OptimumRecord& optimum);
+/// E_min of one pattern under each relaxation and, given its optimum at the level of the curves,
+/// the objective; the tangents at zero that the multipliers predict dotted.
+[[nodiscard]] Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records,
+                                     const IntervalRecord& interval, const OptimumRecord* optimum);
+/// Number of admissible patterns under each relaxation.
+[[nodiscard]] Chart count_chart(const Scene& scene, const SensitivityRecords& records);
+/// Patterns left after each condition, in every order.
+[[nodiscard]] Chart funnel_chart(const Scene& scene, const SensitivityRecords& records);
+
+/// Draws the charts that the records can show into folder/charts; returns the SVG and PNG files.
+[[nodiscard]] std::vector<std::filesystem::path> draw_sensitivity(
+    const std::filesystem::path& folder, const Scene& scene, const SensitivityRecords& records);
+
+}  // namespace nsma

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "nsma/report/scene_file.hpp"
+#include "study/sweep/sweep_work.hpp"
+
+namespace nsma {
+
+/// What must be the same for stored results to be gone on with.
+struct StoreVersions {
+    std::string software;  ///< versions of the program and its solvers, one line
+    std::string options;   ///< of the solvers, one line
+};
+
+/// The results of one sweep in one SQLite file: DIR/results.sqlite once the sweep is complete,
+/// results.sqlite.part until then. Each result is committed as it comes, so that a kill loses
+/// what is in flight only. Tables and columns: data/README.md. Throws InputError (one line)
+/// when the file cannot be opened, read or written; what was committed stays valid.
+class SweepStore {
+public:
+    enum class Mode {
+        fresh,  ///< a new part file; complete results stay until it is complete
+        resume  ///< goes on with the part file or the complete results, if there are any
+    };
+    /// Prepares the folder as SweepFolder does. A store of another scene, of other versions, or
+    /// in use by another process is refused.
+    SweepStore(const std::filesystem::path& folder, const Scene& scene, const StoreVersions& versions, Mode mode);
+    /// Opens what a folder holds, to read: complete results, else the part file.
+    explicit SweepStore(const std::filesystem::path& folder);
+    ~SweepStore();
+    SweepStore(const SweepStore&) = delete;
+    SweepStore& operator=(const SweepStore&) = delete;
+
+    /// In one commit: all are stored, or none is. A result that is stored already stays as it is.
+    void put(const std::vector<WorkResult>& results);
+    /// Hands on every result in the scene's order: each pattern, then its answers by place.
+    void for_each(const std::function<void(WorkResult)>& visit) const;
+    [[nodiscard]] const Scene& scene() const;
+    [[nodiscard]] bool complete() const;
+    [[nodiscard]] bool beside_complete() const;  ///< a part file, with complete results beside it
+    [[nodiscard]] double seconds() const;  ///< time spent on it, over all runs that ended in order
+    void add_seconds(double seconds);
+    /// Marks the sweep as complete and gives the file its final name.
+    void finish();
+
+    /// Whether a folder holds a store, complete or not.
+    [[nodiscard]] static bool in(const std::filesystem::path& folder);
+
+private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+/// Writes patterns.csv, levels.csv, orbits.jsonl, timings.csv and the summary of a store into
+/// its folder, each complete or not at all; a part file never replaces complete results. `distinct` leaves answers out whose
+/// motion one before at the same level has under another label. `line` tells the user where they are.
+struct Exported {
+    SweepSummary summary;
+    std::string line;
+};
+[[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder, bool distinct = false);
+
+}  // namespace nsma

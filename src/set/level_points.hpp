@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "nsma/set/admissible_set.hpp"
+
+namespace nsma {
+
+/// Points of an admissible set at one energy level, without a solver: between two admissible
+/// points the energy is a quadratic, so a segment from below the level to above it crosses it
+/// exactly, and convexity keeps the crossing admissible.
+class LevelPoints {
+public:
+    /// The set must be nonempty, with its vertices, and outlive this object; level > 0.
+    LevelPoints(const AdmissibleSet& set, double level);
+
+    /// Start number k >= 0, feasible on the level: toward each vertex above it, the greatest energy first, then toward
+    /// fixed-seed random mixtures. Absent when the level is not attainable.
+    [[nodiscard]] std::optional<Eigen::VectorXd> start(int k) const;
+
+    /// Number of vertices above the level: it may cut the set into as many pieces, each with optima of its own.
+    [[nodiscard]] int pieces() const;
+
+    /// The admissible point on the level that a segment from `gamma` (admissible) reaches.
+    [[nodiscard]] std::optional<Eigen::VectorXd> reach(const Eigen::VectorXd& gamma) const;
+
+    /// An admissible point away from the rows that can be away from equality.
+    [[nodiscard]] const Eigen::VectorXd& centre() const { return centre_; }
+
+private:
+    [[nodiscard]] Eigen::VectorXd mixture(int seed) const;
+
+    const AdmissibleSet& set_;
+    double level_;
+    Eigen::VectorXd base_;    // the least-energy point; the rest state for a closed gap
+    Eigen::VectorXd centre_;
+};
+
+}  // namespace nsma

@@ -1,0 +1,145 @@
+#include "kernel_methods.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include "nsma/orbit/kernel.hpp"
+#include "wave/dense_wfem.hpp"
+
+namespace nsma {
+namespace {
+
+using Eigen::MatrixXd;
+
+constexpr int most_squarings = 60;
+
+// S_T in the coordinates [sigma/z; v], in which the steps are orthogonal.
+MatrixXd periodicity(const Bar& bar, const Pattern& pattern) {
+    const int cells = pattern.cells;
+    MatrixXd matrix = dense::periodicity_matrix(bar, Mesh{cells}, pattern.free_steps, pattern.contact_steps);
+    matrix.topRightCorner(cells, cells) /= bar.impedance();
+    matrix.bottomLeftCorner(cells, cells) *= bar.impedance();
+    return matrix;
+}
+
+// b_{N-i} = (v_i - s_i)/2 and b_{N+i-1} = -(v_i + s_i)/2 with s = sigma/z; columns have norm
+// sqrt(2N/g) in b, and |[s; v]|^2 = 2 |b|^2.
+MatrixXd cycles_basis(const Pattern& pattern) {
+    const Kernel kernel = exact_kernel(pattern);
+    const int cells = pattern.cells;
+    const double unit = std::sqrt(static_cast<double>(kernel.classes) / (4.0 * cells));
+    MatrixXd basis = MatrixXd::Zero(2 * cells, kernel.dimension());
+    const int steps = pattern.period_steps();
+    const auto add = [&](int n, Eigen::Index row, double factor) {
+        n %= steps;  // the window may be longer than the period
+        const int column = kernel.column(n);
+        if (column >= 0) basis(row, column) += factor * unit * kernel.sign[static_cast<std::size_t>(n)];
+    };
+    for (int i = 1; i <= cells; ++i) {
+        add(cells - i, i - 1, -1.0);
+        add(cells + i - 1, i - 1, -1.0);
+        add(cells - i, cells + i - 1, 1.0);
+        add(cells + i - 1, cells + i - 1, -1.0);
+    }
+    return basis;
+}
+
+Eigen::VectorXd pivots(const Eigen::ColPivHouseholderQR<MatrixXd>& qr) {
+    return qr.matrixR().diagonal().cwiseAbs();
+}
+
+Eigen::Index count_zero(const Eigen::VectorXd& values, double tolerance) {
+    const double threshold = tolerance * std::max(1.0, values.size() > 0 ? values.maxCoeff() : 1.0);
+    return (values.array() <= threshold).count();
+}
+
+MatrixXd powers_basis(const MatrixXd& matrix, double tolerance) {
+    const auto n = matrix.rows();
+    MatrixXd projector = MatrixXd::Identity(n, n) + 0.5 * matrix;
+    for (int k = 0; k < most_squarings; ++k) {
+        const MatrixXd squared = projector * projector;
+        const double change = (squared - projector).cwiseAbs().maxCoeff();
+        projector = squared;
+        if (change <= tolerance) break;
+    }
+    const auto rank = static_cast<Eigen::Index>(std::lround(projector.trace()));
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(projector);
+    const MatrixXd q = qr.householderQ() * MatrixXd::Identity(n, n);
+    return q.leftCols(std::clamp<Eigen::Index>(rank, 0, n));
+}
+
+}  // namespace
+
+std::string_view name(KernelMethod method) {
+    switch (method) {
+        case KernelMethod::exact_cycles: return "exact cycles";
+        case KernelMethod::dense_svd: return "dense SVD";
+        case KernelMethod::divided_svd: return "dense SVD, divide and conquer";
+        case KernelMethod::rank_revealing_qr: return "rank-revealing QR";
+        case KernelMethod::matrix_powers: return "matrix powers";
+    }
+    return "";
+}
+
+MatrixXd kernel_space(KernelMethod method, const Bar& bar, const Pattern& pattern, double tolerance) {
+    validate(bar);
+    validate(pattern);
+    if (!(tolerance > 0)) {
+        throw std::invalid_argument("tolerance: expected > 0, got " + std::to_string(tolerance));
+    }
+    if (method == KernelMethod::exact_cycles) return cycles_basis(pattern);
+    const MatrixXd matrix = periodicity(bar, pattern);
+    const auto n = matrix.rows();
+    if (method == KernelMethod::matrix_powers) return powers_basis(matrix, tolerance);
+    if (method == KernelMethod::dense_svd) {
+        const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeFullV);
+        return svd.matrixV().rightCols(count_zero(svd.singularValues(), tolerance));
+    }
+    if (method == KernelMethod::divided_svd) {
+        const Eigen::BDCSVD<MatrixXd> svd(matrix, Eigen::ComputeFullV);
+        return svd.matrixV().rightCols(count_zero(svd.singularValues(), tolerance));
+    }
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(matrix.transpose());
+    const MatrixXd q = qr.householderQ() * MatrixXd::Identity(n, n);
+    return q.rightCols(count_zero(pivots(qr), tolerance));
+}
+
+Eigen::VectorXi dimensions_found(KernelMethod method, const Bar& bar, const Pattern& pattern,
+                                 const Eigen::VectorXd& tolerances) {
+    Eigen::VectorXd values;
+    if (method == KernelMethod::dense_svd) {
+        values = Eigen::JacobiSVD<MatrixXd>(periodicity(bar, pattern)).singularValues();
+    } else if (method == KernelMethod::divided_svd) {
+        values = Eigen::BDCSVD<MatrixXd>(periodicity(bar, pattern)).singularValues();
+    } else if (method == KernelMethod::rank_revealing_qr) {
+        values = pivots(Eigen::ColPivHouseholderQR<MatrixXd>(periodicity(bar, pattern).transpose()));
+    } else {
+        throw std::invalid_argument("method: expected an SVD or rank-revealing QR, got " +
+                                    std::string(name(method)));
+    }
+    Eigen::VectorXi found(tolerances.size());
+    for (Eigen::Index i = 0; i < tolerances.size(); ++i) {
+        found[i] = static_cast<int>(count_zero(values, tolerances[i]));
+    }
+    return found;
+}
+
+double space_distance(const MatrixXd& a, const MatrixXd& b) {
+    if (a.rows() != b.rows()) {
+        throw std::invalid_argument("b: expected " + std::to_string(a.rows()) + " rows, got " +
+                                    std::to_string(b.rows()));
+    }
+    if (a.cols() != b.cols()) return 1.0;
+    if (a.cols() == 0) return 0.0;
+    const MatrixXd rest = b - a * (a.transpose() * b);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> squares(rest.transpose() * rest, Eigen::EigenvaluesOnly);
+    return std::min(1.0, std::sqrt(std::max(squares.eigenvalues().maxCoeff(), 0.0)));
+}
+
+}  // namespace nsma

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "sweep_work.hpp"
+
+namespace nsma {
+
+/// Which units of a sweep are left, and who has which: no clock, no input or output. A worker
+/// goes on with the pattern it holds; then undecided patterns are taken, in the scene's order or
+/// the longest first (m n_T estimates the work); at last, levels of patterns that others hold.
+///
+/// Levels that start from each other's orbits form a strand, which one worker has at a time: all
+/// levels of a pattern for `nearest`; eight in a row where Ipopt is usually asked, so that most of
+/// them begin near their optimum and a long list of levels still divides among many workers; else one.
+/// A level's result so depends on its strand alone, not on who did what when.
+///
+/// Verdicts take microseconds: of the longest first, several are handed out together.
+///
+/// Its memory: a byte and a number a pattern, a byte a level of the patterns in hand.
+class SweepQueue {
+public:
+    enum class Order { scene, longest_first };
+    SweepQueue(const Scene& scene, const OrbitSolverOptions& options, Order order);
+
+    /// Marks a unit as done, by a worker or by a store read back.
+    void done(const WorkResult& result);
+    /// The next units for this worker, which must not hold others: verdicts, or one answer. Empty: nothing at present.
+    [[nodiscard]] std::vector<WorkUnit> next(int worker);
+    /// The worker is gone: its units are handed out again.
+    void lost(int worker);
+
+    [[nodiscard]] bool finished() const { return undecided_ == 0 && open_.empty(); }
+    [[nodiscard]] long done_count() const { return done_; }    ///< patterns and answers asked
+    [[nodiscard]] long total_count() const { return total_; }  ///< as far as known
+
+private:
+    enum class State : std::uint8_t { left, handed, done };
+    // A strand begun and not done.
+    struct Strand {
+        int next = 0;                // place; those before it are done
+        std::vector<double> before;  // beta of its last orbit
+    };
+    // An admissible pattern with places left.
+    struct Open {
+        std::vector<State> places;  // from first_place_ on
+        int left = 0;               // places not done
+        int strand_length = 1;
+        int available = 0;  // strands neither done nor handed
+        std::map<int, Strand> begun;
+        std::set<int> waiting;  // those of them that are not handed
+        int fresh = 0;          // the strands before it are begun or done
+        int workers = 0;        // whose seat is here
+    };
+    // What a worker has in hand, or had last.
+    struct Seat {
+        long pattern = 0;
+        int place = -1;
+        std::vector<long> verdicts;  // patterns; place -1
+    };
+
+    [[nodiscard]] int strand_of(const Open& open, int place) const;
+    [[nodiscard]] int first_place_of(const Open& open, int strand) const;
+    [[nodiscard]] int end_place_of(const Open& open, int strand) const;
+    [[nodiscard]] int strands(const Open& open) const { return strand_of(open, last_place_) + 1; }
+    [[nodiscard]] State& state_at(Open& open, int place) const;
+    Strand& begin(Open& open, int strand) const;
+    void sit(int worker, Seat seat);
+    void leave(int worker);
+    void decided(const WorkResult& result);
+    [[nodiscard]] std::optional<WorkUnit> take(long pattern, int worker);
+    [[nodiscard]] std::vector<WorkUnit> decide(int worker);
+    [[nodiscard]] std::optional<WorkUnit> help(int worker);
+
+    OrbitSolverOptions options_;
+    bool all_kinds_ = false;
+    bool nearest_ = false;
+    int first_place_ = 0;
+    int last_place_ = 0;
+    std::vector<State> state_;  // of each pattern's verdict
+    std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> batches_;  // ends of the pieces of order_ that are handed out together
+    std::size_t batch_ = 0;
+    std::vector<long> returned_;  // verdicts of lost workers
+    std::map<long, Open> open_;
+    std::set<long> unheld_;  // open patterns without a worker: of an earlier run, or of lost workers
+    std::map<int, Seat> seats_;
+    long undecided_ = 0;
+    long done_ = 0;
+    long total_ = 0;
+};
+
+}  // namespace nsma
