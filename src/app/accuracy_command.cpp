@@ -3,9 +3,9 @@
 #include "commands.hpp"
 #include "progress.hpp"
 
-#include "report/accuracy/accuracy_folder.hpp"
-#include "nsma/report/scene_file.hpp"
 #include "study/accuracy/accuracy.hpp"
+#include "nsma/report/scene_file.hpp"
+#include "report/accuracy/accuracy_folder.hpp"
 
 namespace nsma::app {
 namespace {
@@ -32,8 +32,9 @@ private:
 int run(const AccuracyArguments& arguments, const std::atomic<bool>& stop) {
     const Scene scene = load_scene({arguments.scene_file, std::nullopt, std::nullopt});
     if (scene.bar.gap_sign() == 0) {
-        throw InputError(fmt::format("{}: gap: expected one that is not zero: a closed gap has no energy interval to study, got 0",
-                                     arguments.scene_file));
+        throw InputError(
+            fmt::format("{}: gap: expected one that is not zero: a closed gap has no energy interval to study, got 0",
+                        arguments.scene_file));
     }
     if (is_extreme(scene.objective)) {
         throw InputError(fmt::format("{}: objective: expected one at a given energy, got {}", arguments.scene_file,

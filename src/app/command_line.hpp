@@ -42,7 +42,7 @@ struct SweepArguments {
     OrbitSolverOptions solver;
     bool all_kinds = false;  ///< also free and stuck patterns
     bool distinct = false;   ///< one row a motion
-    bool resume = false;  ///< go on with what the folder holds
+    bool resume = false;     ///< go on with what the folder holds
     bool quiet = false;
 };
 
@@ -60,9 +60,9 @@ struct AccuracyArguments {
 
 struct SensitivityArguments {
     std::string scene_file;
-    std::optional<int> free_steps;     ///< with contact_steps: one pattern instead of the scene's
+    std::optional<int> free_steps;  ///< with contact_steps: one pattern instead of the scene's
     std::optional<int> contact_steps;
-    std::optional<double> energy;      ///< of one pattern
+    std::optional<double> energy;  ///< of one pattern
     std::optional<Objective> objective;
     std::string out;
     OrbitSolverOptions solver;
@@ -78,7 +78,7 @@ struct PlotArguments {
 struct ProveArguments {
     SceneArguments scene;
     std::optional<std::array<double, 2>> period;  ///< [lo, hi] in units of tau
-    std::optional<int> free_steps;     ///< with contact_steps: one pattern instead of the scene's
+    std::optional<int> free_steps;                ///< with contact_steps: one pattern instead of the scene's
     std::optional<int> contact_steps;
     std::string out;
     bool quiet = false;
@@ -93,9 +93,8 @@ struct TextArguments {
     std::string text;
 };
 
-using Arguments =
-    std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, ExportArguments, AccuracyArguments,
-                 SensitivityArguments, PlotArguments, ProveArguments, CheckArguments>;
+using Arguments = std::variant<TextArguments, ScanArguments, OrbitArguments, SweepArguments, ExportArguments,
+                               AccuracyArguments, SensitivityArguments, PlotArguments, ProveArguments, CheckArguments>;
 
 /// Versions of the program and its solvers, one line.
 [[nodiscard]] std::string version();

@@ -20,8 +20,8 @@ enum Tag { tag_unit = 1, tag_result, tag_dismissed, tag_goodbye };
 constexpr int child_worker = 0;  // the child of rank 0; rank r is worker r
 
 // The wait between two looks for a message. It grows while none comes: where results come quickly they are answered at
-// once, where solves are long the processor is left to them. At most half a millisecond is lost, at a look's cost of some
-// ten microseconds.
+// once, where solves are long the processor is left to them. At most half a millisecond is lost, at a look's cost of
+// some ten microseconds.
 class Pause {
 public:
     [[nodiscard]] std::chrono::microseconds next() {

@@ -16,7 +16,8 @@ std::string energy_text(double energy, bool closed) {
 std::string_view meaning(PatternKind kind) {
     switch (kind) {
         case PatternKind::contact: return "its orbits press against the wall and leave it";
-        case PatternKind::free: return "no orbit presses against the wall; a free vibration that grazes it, not a contact motion";
+        case PatternKind::free:
+            return "no orbit presses against the wall; a free vibration that grazes it, not a contact motion";
         case PatternKind::stuck: break;
     }
     return "no orbit leaves the wall; a vibration with the end held, not a contact motion";
@@ -25,11 +26,14 @@ std::string_view meaning(PatternKind kind) {
 // What presolve took from the conditions before any program was built.
 void print_presolve(const Reduction& reduction) {
     const RemovalCounts& removed = reduction.removed;
-    fmt::print("presolve      {} unknowns and {} COND1 rows kept; classes removed: {} dead, {} in sign conflict, {} forced to zero;\n"
-               "              rows removed: {} COND2 duplicates, {} COND3 rows (now bounds), COND1: {} silent, {} implied, {} duplicate, {} dominated\n",
-               reduction.variables(), reduction.rows.rows(), removed.dead_classes, removed.sign_conflicts,
-               removed.forced_zero, removed.contact_duplicates, removed.force_rows, removed.silent_rows,
-               removed.implied_rows, removed.duplicate_rows, removed.dominated_rows);
+    fmt::print(
+        "presolve      {} unknowns and {} COND1 rows kept; classes removed: {} dead, {} in sign conflict, {} forced to "
+        "zero;\n"
+        "              rows removed: {} COND2 duplicates, {} COND3 rows (now bounds), COND1: {} silent, {} implied, {} "
+        "duplicate, {} dominated\n",
+        reduction.variables(), reduction.rows.rows(), removed.dead_classes, removed.sign_conflicts, removed.forced_zero,
+        removed.contact_duplicates, removed.force_rows, removed.silent_rows, removed.implied_rows,
+        removed.duplicate_rows, removed.dominated_rows);
 }
 
 void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar& bar) {
@@ -42,10 +46,9 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
     fmt::print("verdict       {}{}{}{}\n", name(answer.verdict), answer.verdict_proved ? ", proved" : "",
                answer.reason.empty() ? "" : "; ", answer.reason);
     if (answer.interval.least) {
-        const std::string greatest = answer.interval.unbounded ? "unbounded"
-                                     : answer.interval.greatest
-                                         ? energy_text(*answer.interval.greatest, closed)
-                                         : "unknown";
+        const std::string greatest = answer.interval.unbounded  ? "unbounded"
+                                     : answer.interval.greatest ? energy_text(*answer.interval.greatest, closed)
+                                                                : "unknown";
         const auto exactly = [](const std::string& fraction) {
             return fraction.find('/') == std::string::npos ? std::string() : " = " + fraction;
         };
@@ -61,30 +64,30 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
                violations.periodicity, violations.cond1, violations.cond2, violations.cond3, violations.energy);
     const auto& kind = *answer.classification;
     fmt::print("motion        {}minimal period {} steps, {} silent contact steps, {} touches in flight, {} support\n",
-               kind.forceless ? "no force, " : "", kind.minimal_period_steps, kind.silent_contact_steps, kind.wall_touches,
-               kind.full_support ? "full" : "partial");
+               kind.forceless ? "no force, " : "", kind.minimal_period_steps, kind.silent_contact_steps,
+               kind.wall_touches, kind.full_support ? "full" : "partial");
     if (const auto& label = kind.same_motion_as) {
-        fmt::print("also          r = {}, p = {}, {} steps later{}\n", label->free_steps, label->contact_steps, label->shift_steps,
-                   label->reversed ? ", backward in time" : "");
+        fmt::print("also          r = {}, p = {}, {} steps later{}\n", label->free_steps, label->contact_steps,
+                   label->shift_steps, label->reversed ? ", backward in time" : "");
     }
     fmt::print("peak force    {:.6g} N\n", contact_force(*answer.orbit).cwiseAbs().maxCoeff());
     if (const auto& optimality = answer.optimality; optimality && optimality->lower_bound) {
         fmt::print("bound         {:.10g}, {}\n", *optimality->lower_bound,
-                   optimality->global ? "the best orbit at this level"
-                                      : fmt::format("gap {:.1e}", optimality->gap));
+                   optimality->global ? "the best orbit at this level" : fmt::format("gap {:.1e}", optimality->gap));
     }
     std::size_t further = answer.solvers.size();
     for (const char* solver : {"ipopt", "nlopt"}) {
         const SolverRun* run = best_run(answer, solver);
         if (run == nullptr) continue;
         --further;
-        fmt::print("{:<13} start {}: {}, {} iterations, {:.1f} ms, objective {}, raw violation {:.1e}\n",
-                   run->name, run->start, run->status, run->iterations, 1e3 * run->seconds,
+        fmt::print("{:<13} start {}: {}, {} iterations, {:.1f} ms, objective {}, raw violation {:.1e}\n", run->name,
+                   run->start, run->status, run->iterations, 1e3 * run->seconds,
                    run->usable ? fmt::format("{:.10g}", run->objective) : "unusable", run->violation);
     }
-    fmt::print("agreement     {}{}{}\n", name(answer.agreement),
-               answer.objective_difference ? fmt::format(", relative difference {:.1e}", *answer.objective_difference) : "",
-               further > 0 ? fmt::format(", {} further runs", further) : "");
+    fmt::print(
+        "agreement     {}{}{}\n", name(answer.agreement),
+        answer.objective_difference ? fmt::format(", relative difference {:.1e}", *answer.objective_difference) : "",
+        further > 0 ? fmt::format(", {} further runs", further) : "");
     fmt::print("alpha [m/s]  ");
     const Eigen::VectorXd alpha = amplitudes(*answer.orbit);
     for (const double value : alpha) fmt::print(" {:.6g}", value + 0.0);
@@ -106,8 +109,9 @@ int run(const OrbitArguments& arguments, const std::atomic<bool>&) {
                                      name(request.objective), *request.level));
     }
     if (gap_sign == 0 && extreme) {
-        throw InputError(fmt::format("command line: --objective: expected one at a given energy for a closed gap, got {}",
-                                     name(request.objective)));
+        throw InputError(
+            fmt::format("command line: --objective: expected one at a given energy for a closed gap, got {}",
+                        name(request.objective)));
     }
     if (gap_sign == 0 && !request.level) {
         throw InputError("command line: --energy: expected joules (a closed gap has no least-energy orbit), got none");

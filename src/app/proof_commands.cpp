@@ -8,8 +8,8 @@
 #include "progress.hpp"
 
 #include "nsma/search/orbit_solver.hpp"
-#include "report/certificate_file.hpp"
 #include "nsma/report/scene_file.hpp"
+#include "report/certificate_file.hpp"
 
 namespace nsma::app {
 namespace {
@@ -54,7 +54,8 @@ int run(const ProveArguments& arguments, const std::atomic<bool>& stop) {
                 file << certificate_json(proof.certificate) << '\n';
                 ++proved;
             } else {
-                fmt::print(stderr, "nsma: ({}, {}): unproved: {}\n", pattern.free_steps, pattern.contact_steps, proof.unproved);
+                fmt::print(stderr, "nsma: ({}, {}): unproved: {}\n", pattern.free_steps, pattern.contact_steps,
+                           proof.unproved);
             }
             if (problem.verdict == Verdict::admissible) {
                 ++admissible;
@@ -72,9 +73,10 @@ int run(const ProveArguments& arguments, const std::atomic<bool>& stop) {
         std::filesystem::rename(part, arguments.out, code);
         if (code) throw InputError(arguments.out + ": cannot be written: " + code.message());
     }
-    fmt::print("{} patterns, {} proved; {} admissible ({} contact, {} free, {} stuck), greatest energy exact for {}\n{} {}\n",
-               done, proved, admissible, kinds[0], kinds[1], kinds[2], exact,
-               whole ? "certificates are in" : "interrupted: those so far are in", whole ? arguments.out : part);
+    fmt::print(
+        "{} patterns, {} proved; {} admissible ({} contact, {} free, {} stuck), greatest energy exact for {}\n{} {}\n",
+        done, proved, admissible, kinds[0], kinds[1], kinds[2], exact,
+        whole ? "certificates are in" : "interrupted: those so far are in", whole ? arguments.out : part);
     std::fflush(stdout);
     if (!whole) return exit_interrupted;
     return proved == done ? exit_done : exit_solver;

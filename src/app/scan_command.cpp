@@ -6,9 +6,9 @@
 #include "commands.hpp"
 #include "progress.hpp"
 
+#include "nsma/study/scan.hpp"
 #include "nsma/report/scene_file.hpp"
 #include "report/sweep/tables.hpp"
-#include "nsma/study/scan.hpp"
 
 namespace nsma::app {
 
@@ -45,36 +45,38 @@ int run(const ScanArguments& arguments, const std::atomic<bool>& stop) {
     if (arguments.csv) fmt::print("{}\n", scan_csv_header());
     {
         Progress progress("scan", arguments.quiet);
-        scan(scene,
-             [&](const PatternRecord& record) {
-                 progress.show(++done, total);
-                 const Pattern& pattern = record.pattern;
-                 ++removed.of[static_cast<std::size_t>(sieve(pattern.free_steps, pattern.contact_steps).finding)];
-                 if (record.kind) {
-                     ++admissible;
-                     ++kinds.at(static_cast<std::size_t>(*record.kind));
-                 }
-                 if (record.verdict == Verdict::failed) {
-                     ++failed;
-                     fmt::print(stderr, "nsma: ({}, {}): {}\n", record.pattern.free_steps,
-                                record.pattern.contact_steps, record.reason);
-                 }
-                 if (record.kernel_dimension == 0) return;
-                 if (arguments.csv) {
-                     fmt::print("{}\n", scan_csv_row(scene.bar, record));
-                 } else {
-                     shown.push_back(record);
-                 }
-             },
-             [&] { return !stop.load(); }, arguments.method);
+        scan(
+            scene,
+            [&](const PatternRecord& record) {
+                progress.show(++done, total);
+                const Pattern& pattern = record.pattern;
+                ++removed.of[static_cast<std::size_t>(sieve(pattern.free_steps, pattern.contact_steps).finding)];
+                if (record.kind) {
+                    ++admissible;
+                    ++kinds.at(static_cast<std::size_t>(*record.kind));
+                }
+                if (record.verdict == Verdict::failed) {
+                    ++failed;
+                    fmt::print(stderr, "nsma: ({}, {}): {}\n", record.pattern.free_steps, record.pattern.contact_steps,
+                               record.reason);
+                }
+                if (record.kernel_dimension == 0) return;
+                if (arguments.csv) {
+                    fmt::print("{}\n", scan_csv_row(scene.bar, record));
+                } else {
+                    shown.push_back(record);
+                }
+            },
+            [&] { return !stop.load(); }, arguments.method);
     }
     if (!arguments.csv) {
         fmt::print("{}{} patterns, {} with a nontrivial kernel, {} admissible: {} contact, {} free, {} stuck\n",
                    scan_table(scene.bar, shown), done, shown.size(), admissible, kinds[0], kinds[1], kinds[2]);
-        fmt::print("decided in integers: {} trivial kernels, {} with every live class bounded from both sides, "
-                   "{} by COND2's row, {} by a COND1 row\n",
-                   removed[Finding::trivial], removed[Finding::sign_conflict], removed[Finding::wrong_side],
-                   removed[Finding::penetrates]);
+        fmt::print(
+            "decided in integers: {} trivial kernels, {} with every live class bounded from both sides, "
+            "{} by COND2's row, {} by a COND1 row\n",
+            removed[Finding::trivial], removed[Finding::sign_conflict], removed[Finding::wrong_side],
+            removed[Finding::penetrates]);
     }
     if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     if (stop.load()) return exit_interrupted;

@@ -5,9 +5,9 @@
 #include "commands.hpp"
 #include "progress.hpp"
 
+#include "nsma/study/sensitivity/sensitivity.hpp"
 #include "nsma/report/scene_file.hpp"
 #include "report/sensitivity/sensitivity_folder.hpp"
-#include "nsma/study/sensitivity/sensitivity.hpp"
 
 namespace nsma::app {
 namespace {
@@ -33,7 +33,8 @@ int run(const SensitivityArguments& arguments, const std::atomic<bool>& stop) {
     if (arguments.free_steps) {
         request.pattern = Pattern{scene.mesh.cells, *arguments.free_steps, *arguments.contact_steps};
         if (scene.bar.gap_sign() == 0 && !arguments.energy) {
-            throw InputError("command line: --energy: expected joules (a closed gap has no least-energy orbit), got none");
+            throw InputError(
+                "command line: --energy: expected joules (a closed gap has no least-energy orbit), got none");
         }
     }
     const bool extreme = is_extreme(scene.objective);
@@ -42,8 +43,8 @@ int run(const SensitivityArguments& arguments, const std::atomic<bool>& stop) {
                                      name(scene.objective), *request.level));
     }
     if (extreme && scene.bar.gap_sign() == 0) {
-        throw InputError(fmt::format("{}: objective: expected one at a given energy for a closed gap, got {}", arguments.scene_file,
-                                     name(scene.objective)));
+        throw InputError(fmt::format("{}: objective: expected one at a given energy for a closed gap, got {}",
+                                     arguments.scene_file, name(scene.objective)));
     }
     open_sensitivity_folder(arguments.out, scene);
     SensitivityRecords records;
@@ -57,10 +58,12 @@ int run(const SensitivityArguments& arguments, const std::atomic<bool>& stop) {
     write_sensitivity(arguments.out, scene, records, summary);
     fmt::print("{}results are in {}\n", sensitivity_text("sensitivity.txt", scene, records, summary), arguments.out);
     if (!summary.interrupted) {
-        for (const auto& picture : draw_sensitivity(arguments.out, scene, records)) fmt::print("chart    {}\n", picture.string());
+        for (const auto& picture : draw_sensitivity(arguments.out, scene, records))
+            fmt::print("chart    {}\n", picture.string());
     }
     if (summary.left > 0 && summary.left == summary.admissible) {
-        fmt::print(stderr, "nsma: no pattern of the scene is a contact motion; --all-kinds studies the other {}\n", summary.left);
+        fmt::print(stderr, "nsma: no pattern of the scene is a contact motion; --all-kinds studies the other {}\n",
+                   summary.left);
     }
     if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     if (summary.interrupted) return exit_interrupted;

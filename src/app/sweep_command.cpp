@@ -8,12 +8,12 @@
 #include "crew.hpp"
 #include "progress.hpp"
 
-#include "report/charts.hpp"
-#include "nsma/report/scene_file.hpp"
-#include "report/sweep/sweep_store.hpp"
-#include "report/sweep/tables.hpp"
 #include "study/sweep/sweep_queue.hpp"
 #include "study/sweep/work_messages.hpp"
+#include "nsma/report/scene_file.hpp"
+#include "report/charts.hpp"
+#include "report/sweep/sweep_store.hpp"
+#include "report/sweep/tables.hpp"
 
 namespace nsma::app {
 namespace {
@@ -32,8 +32,8 @@ std::string options_text(const OrbitSolverOptions& options, bool all_kinds) {
                           : options.solvers == SolverChoice::proof ? "proof"
                           : options.solvers == SolverChoice::ipopt ? "ipopt"
                                                                    : "nlopt";
-    return fmt::format("solver {}, starts {}, tolerance {}, kinds {}", solvers, options.starts, options.solver.tolerance,
-                       all_kinds ? "all" : "contact");
+    return fmt::format("solver {}, starts {}, tolerance {}, kinds {}", solvers, options.starts,
+                       options.solver.tolerance, all_kinds ? "all" : "contact");
 }
 
 // A process that only computes.
@@ -46,8 +46,8 @@ void help(Crew& crew, const Scene& scene, const OrbitSolverOptions& options) {
 constexpr int own_worker = -2;
 
 // Hands out units and takes in results until all is done, stop is asked or nobody is left.
-void share(Crew& crew, const Scene& scene, SweepQueue& queue, const std::function<void(const std::vector<WorkResult>&)>& keep,
-           const std::atomic<bool>& stop) {
+void share(Crew& crew, const Scene& scene, SweepQueue& queue,
+           const std::function<void(const std::vector<WorkResult>&)>& keep, const std::atomic<bool>& stop) {
     std::set<int> idle;
     for (int worker = 0; worker < crew.workers(); ++worker) {
         if (crew.present(worker)) idle.insert(worker);
@@ -91,7 +91,8 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
     }
     SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver, scene.all_kinds)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
-    SweepQueue queue(scene, arguments.solver, crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
+    SweepQueue queue(scene, arguments.solver,
+                     crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
     if (arguments.resume) store.for_each([&queue](const WorkResult& result) { queue.done(result); });
     const auto begin = std::chrono::steady_clock::now();
     {
@@ -126,7 +127,8 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
     if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
     if (summary.left > 0 && summary.left == summary.admissible) {
-        fmt::print(stderr, "nsma: no pattern of the scene is a contact motion; --all-kinds solves the other {}\n", summary.left);
+        fmt::print(stderr, "nsma: no pattern of the scene is a contact motion; --all-kinds solves the other {}\n",
+                   summary.left);
     }
     const bool found = summary.levels > 0 ? summary.solved > 0 : summary.admissible > summary.left;
     return found ? exit_done : exit_inadmissible;

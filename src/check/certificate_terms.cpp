@@ -10,7 +10,9 @@ void invalid(std::string reason) { throw Invalid{std::move(reason)}; }
 std::string column_name(int column) { return "column " + std::to_string(column); }
 
 CertificateTerms::CertificateTerms(const Certificate& of)
-    : certificate(of), kernel(exact_kernel(of.pattern)), signs(conditions(kernel, of.gap_sign).bound_of),
+    : certificate(of),
+      kernel(exact_kernel(of.pattern)),
+      signs(conditions(kernel, of.gap_sign).bound_of),
       dimension(static_cast<std::size_t>(kernel.dimension())),
       factor(Integer(4) * of.pattern.cells * of.pattern.cells, of.pattern.class_count()) {
     const Eigen::VectorXi row = contact_row(kernel);
@@ -22,8 +24,8 @@ CertificateTerms::Dense CertificateTerms::dense(const RationalVector& sparse, co
     int last = -1;
     for (const auto& [column, value] : sparse) {
         if (column <= last || column >= static_cast<int>(dimension)) {
-            invalid(std::string(what) + ": expected increasing columns below " +
-                    std::to_string(dimension) + ", got " + std::to_string(column));
+            invalid(std::string(what) + ": expected increasing columns below " + std::to_string(dimension) + ", got " +
+                    std::to_string(column));
         }
         last = column;
         result[static_cast<std::size_t>(column)] = value;
@@ -35,8 +37,8 @@ CertificateTerms::Dense CertificateTerms::combine_rows(const RationalVector& row
     int last = 0;
     for (const auto& [n, y] : rows) {
         if (n <= last || n >= certificate.pattern.free_steps) {
-            invalid("rows: expected increasing steps in 1.." +
-                    std::to_string(certificate.pattern.free_steps - 1) + ", got " + std::to_string(n));
+            invalid("rows: expected increasing steps in 1.." + std::to_string(certificate.pattern.free_steps - 1) +
+                    ", got " + std::to_string(n));
         }
         if (y < 0) invalid("COND1 row " + std::to_string(n) + ": multiplier is negative");
         last = n;
@@ -72,8 +74,7 @@ CertificateTerms::Dense CertificateTerms::remainder(const Dense& form, const Row
 Rational CertificateTerms::verified(const FormBound& bound) const {
     const Dense rest = remainder(dense(bound.form, "form"), bound.proof);
     for (std::size_t c = 0; c < dimension; ++c) {
-        const bool dominated = signs[c] == Sign::zero ||
-                               (signs[c] == Sign::free && rest[c] == 0) ||
+        const bool dominated = signs[c] == Sign::zero || (signs[c] == Sign::free && rest[c] == 0) ||
                                (signs[c] == Sign::nonnegative && rest[c] <= 0) ||
                                (signs[c] == Sign::nonpositive && rest[c] >= 0);
         if (!dominated) invalid("bound: multipliers do not dominate " + column_name(static_cast<int>(c)));

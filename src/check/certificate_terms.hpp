@@ -33,10 +33,10 @@ struct CertificateTerms {
 
     const Certificate& certificate;
     Kernel kernel;
-    std::vector<Sign> signs;    ///< of COND3, by column
+    std::vector<Sign> signs;  ///< of COND3, by column
     std::size_t dimension;
-    std::vector<int> contact;   ///< w, COND2's row
-    Rational factor;            ///< E/E_unit = factor |beta|^2
+    std::vector<int> contact;  ///< w, COND2's row
+    Rational factor;           ///< E/E_unit = factor |beta|^2
 };
 
 /// The upper bound on |beta|^2 that the certificate's chain proves. Throws Invalid.

@@ -20,7 +20,8 @@ public:
         switch (certificate_.claim) {
             case Certificate::Claim::trivial:
                 expect_no_kind();
-                if (terms_.dimension != 0) invalid("claim: expected a kernel of dimension 0, got " + std::to_string(terms_.dimension));
+                if (terms_.dimension != 0)
+                    invalid("claim: expected a kernel of dimension 0, got " + std::to_string(terms_.dimension));
                 expect_no_energies("a trivial kernel");
                 return;
             case Certificate::Claim::empty: check_empty(); return;
@@ -54,7 +55,10 @@ private:
             const int column = terms_.kernel.column(k);
             if (column < 0) continue;
             const auto c = static_cast<std::size_t>(column);
-            if (terms_.kernel.sign[static_cast<std::size_t>(k)] > 0) sum += scaled[c]; else sum -= scaled[c];
+            if (terms_.kernel.sign[static_cast<std::size_t>(k)] > 0)
+                sum += scaled[c];
+            else
+                sum -= scaled[c];
             if (sum > 0) invalid(what + ": COND1 row " + std::to_string(k + 1) + " fails");
         }
         if (sum != 0) invalid(what + ": the tip does not return to the wall");
@@ -77,7 +81,8 @@ private:
         Dense result = terms_.combine_rows(certificate_.projection);
         for (std::size_t c = 0; c < terms_.dimension; ++c) {
             result[c] = Rational(certificate_.gap_sign * terms_.contact[c]) - result[c];
-            const bool clipped = terms_.signs[c] == Sign::zero || (terms_.signs[c] == Sign::nonnegative && result[c] < 0) ||
+            const bool clipped = terms_.signs[c] == Sign::zero ||
+                                 (terms_.signs[c] == Sign::nonnegative && result[c] < 0) ||
                                  (terms_.signs[c] == Sign::nonpositive && result[c] > 0);
             if (clipped) result[c] = 0;
         }
@@ -104,8 +109,8 @@ private:
         return false;
     }
 
-    // `witness`: an admissible point, or direction of a closed gap. Where one presses and one moves the tip, a mixture does
-    // both, and by COND1 a tip that moves leaves the wall.
+    // `witness`: an admissible point, or direction of a closed gap. Where one presses and one moves the tip, a mixture
+    // does both, and by COND1 a tip that moves leaves the wall.
     void check_kind(const Dense& witness) const {
         if (!certificate_.kind) invalid("kind: expected contact, free or stuck, got none");
         const int r = certificate_.pattern.free_steps;
@@ -142,9 +147,8 @@ private:
     // Forms proved <= 0: first the sum of |beta_c| over COND3's columns, then +-beta_c of the others.
     void check_only_rest() const {
         std::set<std::pair<int, int>> free_bounded;
-        bool bounded_zero = std::none_of(terms_.signs.begin(), terms_.signs.end(), [](Sign s) {
-            return s == Sign::nonnegative || s == Sign::nonpositive;
-        });
+        bool bounded_zero = std::none_of(terms_.signs.begin(), terms_.signs.end(),
+                                         [](Sign s) { return s == Sign::nonnegative || s == Sign::nonpositive; });
         for (const auto& bound : certificate_.rest) {
             if (terms_.verified(bound) > 0) invalid("rest: a form is not proved <= 0");
             const Dense form = terms_.dense(bound.form, "form");
@@ -222,11 +226,10 @@ private:
 // Empty when the four integers are within what the checker takes.
 std::string refusal(const Certificate& certificate) {
     const auto& pattern = certificate.pattern;
-    if (pattern.cells < 1 || pattern.cells > checked_cells || pattern.free_steps < 1 ||
-        pattern.contact_steps < 1 || pattern.free_steps > checked_steps ||
-        pattern.contact_steps > checked_steps) {
-        return "pattern: expected cells in 1.." + std::to_string(checked_cells) +
-               " and steps in 1.." + std::to_string(checked_steps);
+    if (pattern.cells < 1 || pattern.cells > checked_cells || pattern.free_steps < 1 || pattern.contact_steps < 1 ||
+        pattern.free_steps > checked_steps || pattern.contact_steps > checked_steps) {
+        return "pattern: expected cells in 1.." + std::to_string(checked_cells) + " and steps in 1.." +
+               std::to_string(checked_steps);
     }
     if (certificate.gap_sign < -1 || certificate.gap_sign > 1) {
         return "gap_sign: expected -1, 0 or 1, got " + std::to_string(certificate.gap_sign);

@@ -16,7 +16,7 @@ constexpr std::size_t chain_values = 400;
 // A convex sum of squared steps over bounds and known directions of steps is greatest at a
 // vertex, and there every partial sum equals one of the bounds.
 Rational best_chain(const CertificateTerms& terms, const std::vector<int>& chain, const std::vector<Rational>& lower,
-                                  const std::vector<Rational>& upper, const std::vector<Rational>& values) {
+                    const std::vector<Rational>& upper, const std::vector<Rational>& values) {
     std::vector<std::optional<Rational>> best(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (values[i] == 0) best[i] = 0;
@@ -54,7 +54,8 @@ Rational chain_bound(const CertificateTerms& terms, const GreatestProof& proof) 
         if (seen[c]++ != 0 || terms.contact[c] == 0) invalid("chain: " + column_name(column) + " cannot be chained");
     }
     for (std::size_t c = 0; c < terms.dimension; ++c) {
-        if (terms.signs[c] != Sign::zero && seen[c] == 0) invalid("chain: " + column_name(static_cast<int>(c)) + " is missing");
+        if (terms.signs[c] != Sign::zero && seen[c] == 0)
+            invalid("chain: " + column_name(static_cast<int>(c)) + " is missing");
     }
     const std::size_t n = proof.chain.size();
     if (n == 0 || proof.chain_bounds.size() != 2 * (n - 1)) invalid("chain: expected two bounds a partial sum");

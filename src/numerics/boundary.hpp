@@ -32,14 +32,12 @@ inline Eigen::MatrixXd null_space(const Eigen::MatrixXd& matrix, Eigen::Index n)
 /// The feasible set as rows a.x <= b, equalities apart, and the moves along its boundary.
 class Boundary {
 public:
-    explicit Boundary(const Program& program)
-        : program_(program), equalities_(program.equalities) {}
+    explicit Boundary(const Program& program) : program_(program), equalities_(program.equalities) {}
 
     [[nodiscard]] double slack(const Row& row, const Eigen::VectorXd& x) const {
         switch (row.kind) {
             case Kind::inequality:
-                return program_.inequality_values[row.index] -
-                       program_.inequalities.row(row.index).dot(x);
+                return program_.inequality_values[row.index] - program_.inequalities.row(row.index).dot(x);
             case Kind::lower: return x[row.index] - program_.lower[row.index];
             default: return program_.upper[row.index] - x[row.index];
         }
@@ -131,8 +129,8 @@ public:
     }
 
     // Largest t <= 1 for which no row is crossed along x + t direction; blocking row if t < 1.
-    double step_to_boundary(const Eigen::VectorXd& x, const Eigen::VectorXd& direction,
-                            double tolerance, std::vector<Row>& blocking) const {
+    double step_to_boundary(const Eigen::VectorXd& x, const Eigen::VectorXd& direction, double tolerance,
+                            std::vector<Row>& blocking) const {
         double step = 1.0;
         Row first{Kind::inequality, -1};
         for_each_row([&](const Row& row) {

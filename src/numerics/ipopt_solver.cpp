@@ -45,7 +45,9 @@ const char* status_name(Ipopt::ApplicationReturnStatus status) {
 class Adapter final : public Ipopt::TNLP {
 public:
     Adapter(const Program& program, const Eigen::VectorXd& start, double deadline)
-        : program_(program), start_(start), deadline_(deadline),
+        : program_(program),
+          start_(start),
+          deadline_(deadline),
           x_(Eigen::VectorXd::Constant(start.size(), std::numeric_limits<double>::quiet_NaN())),
           lower_triangle_(program.hessian.triangularView<Eigen::Lower>()) {
         // The sphere adds to the diagonal, so its entries must exist.
@@ -58,8 +60,7 @@ public:
     [[nodiscard]] int iterations() const { return iterations_; }
     [[nodiscard]] bool timed_out() const { return timed_out_; }
 
-    bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian,
-                      IndexStyleEnum& style) override {
+    bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
         n = static_cast<Index>(program_.variables());
         m = static_cast<Index>(program_.equalities.rows() + program_.inequalities.rows()) +
             (program_.sphere_variables > 0 ? 1 : 0);
@@ -88,8 +89,8 @@ public:
         return true;
     }
 
-    bool get_starting_point(Index n, bool init_x, Number* x, bool init_z, Number*, Number*, Index,
-                            bool init_lambda, Number*) override {
+    bool get_starting_point(Index n, bool init_x, Number* x, bool init_z, Number*, Number*, Index, bool init_lambda,
+                            Number*) override {
         if (!init_x || init_z || init_lambda) return false;
         Eigen::Map<Eigen::VectorXd>(x, n) = start_;
         return true;
@@ -110,8 +111,7 @@ public:
         const Eigen::Map<const Eigen::VectorXd> point(x, n);
         Eigen::Map<Eigen::VectorXd> result(values, m);
         result.head(program_.equalities.rows()) = program_.equalities * point;
-        result.segment(program_.equalities.rows(), program_.inequalities.rows()) =
-            program_.inequalities * point;
+        result.segment(program_.equalities.rows(), program_.inequalities.rows()) = program_.inequalities * point;
         if (program_.sphere_variables > 0) {
             result[m - 1] = point.head(program_.sphere_variables).squaredNorm();
         }
@@ -146,13 +146,12 @@ public:
         return true;
     }
 
-    bool eval_h(Index, const Number*, bool, Number factor, Index m, const Number* lambda, bool,
-                Index, Index* rows, Index* columns, Number* values) override {
+    bool eval_h(Index, const Number*, bool, Number factor, Index m, const Number* lambda, bool, Index, Index* rows,
+                Index* columns, Number* values) override {
         const double sphere = program_.sphere_variables > 0 && values != nullptr ? 2.0 * lambda[m - 1] : 0.0;
         Index k = 0;
         for (Eigen::Index outer = 0; outer < lower_triangle_.outerSize(); ++outer) {
-            for (Eigen::SparseMatrix<double>::InnerIterator entry(lower_triangle_, outer); entry;
-                 ++entry, ++k) {
+            for (Eigen::SparseMatrix<double>::InnerIterator entry(lower_triangle_, outer); entry; ++entry, ++k) {
                 if (values == nullptr) {
                     rows[k] = static_cast<Index>(entry.row());
                     columns[k] = static_cast<Index>(entry.col());
@@ -165,18 +164,18 @@ public:
         return true;
     }
 
-    bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number, Number, Number,
-                               Number, Number, Number, Number, Number, Index,
-                               const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number, Number, Number, Number, Number, Number,
+                               Number, Number, Index, const Ipopt::IpoptData*,
+                               Ipopt::IpoptCalculatedQuantities*) override {
         iterations_ = iteration;
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
         timed_out_ = elapsed.count() > deadline_;  // wall time; Ipopt 3.11 only knows CPU time
         return !timed_out_;
     }
 
-    void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*,
-                           const Number*, Index, const Number*, const Number*, Number,
-                           const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*, const Number*, Index,
+                           const Number*, const Number*, Number, const Ipopt::IpoptData*,
+                           Ipopt::IpoptCalculatedQuantities*) override {
         x_ = Eigen::Map<const Eigen::VectorXd>(x, n);
     }
 
@@ -215,8 +214,7 @@ struct IpoptSolver::Implementation {
     Ipopt::SmartPtr<Ipopt::IpoptApplication> application;
 };
 
-IpoptSolver::IpoptSolver(const SolverOptions& options)
-    : implementation_(std::make_unique<Implementation>()) {
+IpoptSolver::IpoptSolver(const SolverOptions& options) : implementation_(std::make_unique<Implementation>()) {
     implementation_->options = options;
     auto& application = implementation_->application;
     application = new Ipopt::IpoptApplication(false);  // no console journal
@@ -234,8 +232,8 @@ IpoptSolver::IpoptSolver(const SolverOptions& options)
     set_option(list, "mu_strategy", "adaptive");
     set_option(list, "mu_oracle", "loqo");  // the default solves twice more an iteration, for no fewer of them
     // What follows saves a third of the time of small programs, in as many iterations: no refinement of a step and no
-    // estimate of the first multipliers, each of which is one more solve, and small solves are all overhead; and, as the
-    // programs are of order one, a first term of that order to make their Hessian positive.
+    // estimate of the first multipliers, each of which is one more solve, and small solves are all overhead; and, as
+    // the programs are of order one, a first term of that order to make their Hessian positive.
     set_option(list, "fast_step_computation", "yes");
     set_option(list, "constr_mult_init_max", 0.0);
     set_option(list, "first_hessian_perturbation", 0.1);
@@ -252,8 +250,8 @@ IpoptSolver& IpoptSolver::operator=(IpoptSolver&&) noexcept = default;
 SolverOutcome IpoptSolver::solve(const Program& program, const Eigen::VectorXd& start) {
     validate(program);
     if (start.size() != program.variables() || !start.allFinite()) {
-        throw std::invalid_argument("start: expected " + std::to_string(program.variables()) +
-                                    " finite values, got " + std::to_string(start.size()));
+        throw std::invalid_argument("start: expected " + std::to_string(program.variables()) + " finite values, got " +
+                                    std::to_string(start.size()));
     }
     const auto begin = std::chrono::steady_clock::now();
     auto* adapter = new Adapter(program, start, implementation_->options.time_limit);

@@ -19,11 +19,11 @@ Eigen::VectorXd solve_on(const Eigen::MatrixXd& matrix, const std::vector<int>& 
 
 }  // namespace
 
-NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& matrix,
-                                              const Eigen::VectorXd& target, double tolerance) {
+NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& target,
+                                              double tolerance) {
     if (matrix.rows() != target.size()) {
-        throw std::invalid_argument("target: expected size " + std::to_string(matrix.rows()) +
-                                    ", got " + std::to_string(target.size()));
+        throw std::invalid_argument("target: expected size " + std::to_string(matrix.rows()) + ", got " +
+                                    std::to_string(target.size()));
     }
     const auto columns = matrix.cols();
     NonnegativeSolution solution;
@@ -50,8 +50,8 @@ NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& matrix,
             }
         }
         const bool full_rank = static_cast<Eigen::Index>(support.size()) == matrix.rows();
-        if (entering < 0 || best <= tolerance * residual_norm ||
-            residual_norm <= tolerance * target.norm() || full_rank) {
+        if (entering < 0 || best <= tolerance * residual_norm || residual_norm <= tolerance * target.norm() ||
+            full_rank) {
             solution.converged = true;
             break;
         }
@@ -60,8 +60,7 @@ NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& matrix,
                        static_cast<int>(entering));
         Eigen::VectorXd trial = solve_on(matrix, support, target);
         const auto position = static_cast<Eigen::Index>(
-            std::lower_bound(support.begin(), support.end(), static_cast<int>(entering)) -
-            support.begin());
+            std::lower_bound(support.begin(), support.end(), static_cast<int>(entering)) - support.begin());
         if (!trial.allFinite() || trial[position] <= 0) {
             // Dependent on the support up to rounding: it cannot reduce the residual.
             support.erase(support.begin() + position);

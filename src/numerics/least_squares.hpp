@@ -18,7 +18,6 @@ struct NonnegativeSolution {
 /// A column enters when its correlation with the residual exceeds `tolerance` times the product
 /// of their norms. Throws std::invalid_argument on a size mismatch.
 [[nodiscard]] NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& matrix,
-                                                            const Eigen::VectorXd& target,
-                                                            double tolerance = 1e-12);
+                                                            const Eigen::VectorXd& target, double tolerance = 1e-12);
 
 }  // namespace nsma

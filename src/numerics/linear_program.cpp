@@ -27,14 +27,13 @@ double clp_bound(double bound) {
 
 void expect_size(const char* name, Eigen::Index expected, Eigen::Index got) {
     if (expected == got) return;
-    throw std::invalid_argument(std::string(name) + ": expected size " + std::to_string(expected) +
-                                ", got " + std::to_string(got));
+    throw std::invalid_argument(std::string(name) + ": expected size " + std::to_string(expected) + ", got " +
+                                std::to_string(got));
 }
 
 }  // namespace
 
-LinearSolver::LinearSolver(const LinearProgram& program)
-    : implementation_(std::make_unique<Implementation>()) {
+LinearSolver::LinearSolver(const LinearProgram& program) : implementation_(std::make_unique<Implementation>()) {
     const auto n = program.rows.cols();
     const auto count = program.rows.rows();
     expect_size("row_lower", count, program.row_lower.size());
@@ -69,8 +68,7 @@ LinearSolver::LinearSolver(const LinearProgram& program)
     const Eigen::VectorXd row_lower = clp_bounds(count > 0 ? program.row_lower : Eigen::VectorXd(-none));
     const Eigen::VectorXd row_upper = clp_bounds(count > 0 ? program.row_upper : none);
     const Eigen::VectorXd cost = Eigen::VectorXd::Zero(n);
-    simplex.loadProblem(matrix, lower.data(), upper.data(), cost.data(), row_lower.data(),
-                        row_upper.data());
+    simplex.loadProblem(matrix, lower.data(), upper.data(), cost.data(), row_lower.data(), row_upper.data());
 }
 
 LinearSolver::~LinearSolver() = default;
@@ -102,10 +100,8 @@ LinearSolution LinearSolver::minimise(const Eigen::VectorXd& cost) {
     }
     if (status != 0) return solution;
     solution.status = LinearStatus::optimal;
-    solution.x = Eigen::Map<const Eigen::VectorXd>(simplex.primalColumnSolution(),
-                                                   implementation_->variables);
-    solution.row_dual =
-        Eigen::Map<const Eigen::VectorXd>(simplex.dualRowSolution(), implementation_->rows);
+    solution.x = Eigen::Map<const Eigen::VectorXd>(simplex.primalColumnSolution(), implementation_->variables);
+    solution.row_dual = Eigen::Map<const Eigen::VectorXd>(simplex.dualRowSolution(), implementation_->rows);
     solution.value = cost.dot(solution.x);
     return solution;
 }

@@ -23,8 +23,8 @@ enum class LinearStatus { optimal, infeasible, unbounded, failed };
 
 struct LinearSolution {
     LinearStatus status = LinearStatus::failed;
-    Eigen::VectorXd x;        ///< optimal point, size n
-    Eigen::VectorXd row_dual; ///< optimal: multipliers of the rows, size R
+    Eigen::VectorXd x;         ///< optimal point, size n
+    Eigen::VectorXd row_dual;  ///< optimal: multipliers of the rows, size R
     double value = 0;
 };
 

@@ -47,8 +47,7 @@ double objective(unsigned n, const double* x, double* gradient, void* data) {
     try {
         const Point point(x, n);
         if (gradient != nullptr) {
-            Eigen::Map<Eigen::VectorXd>(gradient, n) =
-                call.program.hessian * point + call.program.gradient;
+            Eigen::Map<Eigen::VectorXd>(gradient, n) = call.program.hessian * point + call.program.gradient;
         }
         const double value = call.program.objective(point);
         call.expect_finite(value, "the objective");
@@ -59,8 +58,8 @@ double objective(unsigned n, const double* x, double* gradient, void* data) {
     }
 }
 
-void write_rows(const SparseRows& rows, const Eigen::VectorXd& values, const Point& point,
-                double* result, double* gradient) {
+void write_rows(const SparseRows& rows, const Eigen::VectorXd& values, const Point& point, double* result,
+                double* gradient) {
     const auto n = point.size();
     for (Eigen::Index i = 0; i < rows.outerSize(); ++i) {
         double sum = -values[i];
@@ -73,13 +72,11 @@ void write_rows(const SparseRows& rows, const Eigen::VectorXd& values, const Poi
     }
 }
 
-void inequalities(unsigned count, double* result, unsigned n, const double* x, double* gradient,
-                  void* data) {
+void inequalities(unsigned count, double* result, unsigned n, const double* x, double* gradient, void* data) {
     auto& call = *static_cast<Call*>(data);
     call.look_at_the_clock();
     try {
-        write_rows(call.program.inequalities, call.program.inequality_values, Point(x, n), result,
-                   gradient);
+        write_rows(call.program.inequalities, call.program.inequality_values, Point(x, n), result, gradient);
         for (unsigned i = 0; i < count; ++i) {
             call.expect_finite(result[i], "inequality " + std::to_string(i));
         }
@@ -89,8 +86,7 @@ void inequalities(unsigned count, double* result, unsigned n, const double* x, d
     }
 }
 
-void equalities(unsigned count, double* result, unsigned n, const double* x, double* gradient,
-                void* data) {
+void equalities(unsigned count, double* result, unsigned n, const double* x, double* gradient, void* data) {
     auto& call = *static_cast<Call*>(data);
     call.look_at_the_clock();
     try {
@@ -139,12 +135,12 @@ const char* result_name(nlopt::result result) {
 
 }  // namespace
 
-SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
-                               const Eigen::VectorXd& start, const SolverOptions& options) {
+SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program, const Eigen::VectorXd& start,
+                               const SolverOptions& options) {
     validate(program);
     if (start.size() != program.variables() || !start.allFinite()) {
-        throw std::invalid_argument("start: expected " + std::to_string(program.variables()) +
-                                    " finite values, got " + std::to_string(start.size()));
+        throw std::invalid_argument("start: expected " + std::to_string(program.variables()) + " finite values, got " +
+                                    std::to_string(start.size()));
     }
     const auto n = static_cast<unsigned>(program.variables());
     // At zero COBYLA never returns, and calls nothing that could stop it.
@@ -159,7 +155,7 @@ SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
     // Longer than a year is no limit, and would not fit the clock.
     const std::chrono::duration<double> limit(std::min(options.time_limit, 3e7));
     Call call{program, &optimiser, begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit),
-              nullptr, 0, false};
+              nullptr, 0,          false};
 
     const auto set_up = [&] {
         std::vector<double> lower(program.lower.data(), program.lower.data() + n);
@@ -178,8 +174,8 @@ SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
                                                 options.tolerance);
             optimiser.add_inequality_mconstraint(inequalities, &call, tolerance);
         }
-        const auto equality_count = static_cast<std::size_t>(program.equalities.rows()) +
-                                    (program.sphere_variables > 0 ? 1U : 0U);
+        const auto equality_count =
+            static_cast<std::size_t>(program.equalities.rows()) + (program.sphere_variables > 0 ? 1U : 0U);
         if (equality_count > 0) {
             optimiser.add_equality_mconstraint(equalities, &call,
                                                std::vector<double>(equality_count, options.tolerance));

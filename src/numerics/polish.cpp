@@ -17,10 +17,10 @@ namespace {
 constexpr int halvings_limit = 40;
 constexpr double objective_rounding = 1e-15;  // relative to 1 + |f|: a few units in the last place
 constexpr double sphere_rounding = 1e-14;  // of its equation and COND2's, sums of up to some hundred terms of order one
-constexpr double support_rounding = 1e-13;  // relative; rows are scaled to order one
-constexpr double nearly_active = 1e-6;  // slack from which descent no longer comes to a row by itself
+constexpr double support_rounding = 1e-13;   // relative; rows are scaled to order one
+constexpr double nearly_active = 1e-6;       // slack from which descent no longer comes to a row by itself
 constexpr double curvature_rounding = 1e-9;  // relative; a flat direction is no way down
-constexpr double escape_decrease = 1e-12;  // relative to 1 + |f|: more than rounding
+constexpr double escape_decrease = 1e-12;    // relative to 1 + |f|: more than rounding
 constexpr int escape_halvings = 12;
 
 // Multipliers at x and the projection of -gradient on the tangent cone of its active rows.
@@ -41,14 +41,15 @@ std::optional<NonnegativeSolution> all_supporting(const Eigen::MatrixXd& matrix,
     solution.y += qr.solve(target - matrix * solution.y);
     solution.residual = target - matrix * solution.y;
     const double orthogonal = support_rounding * target.norm();  // dependent columns leave more
-    if (solution.y.minCoeff() <= 0 || (matrix.transpose() * solution.residual).cwiseAbs().maxCoeff() > orthogonal) return std::nullopt;
+    if (solution.y.minCoeff() <= 0 || (matrix.transpose() * solution.residual).cwiseAbs().maxCoeff() > orthogonal)
+        return std::nullopt;
     for (int k = 0; k < matrix.cols(); ++k) solution.support.push_back(k);
     solution.converged = true;
     return solution;
 }
 
-FirstOrder first_order(const Program& program, const Boundary& boundary,
-                       const std::vector<Row>& active, const Eigen::VectorXd& x) {
+FirstOrder first_order(const Program& program, const Boundary& boundary, const std::vector<Row>& active,
+                       const Eigen::VectorXd& x) {
     const auto n = program.variables();
     const auto equality_count = program.equalities.rows();
     const bool sphere = program.sphere_variables > 0;
@@ -81,8 +82,7 @@ FirstOrder first_order(const Program& program, const Boundary& boundary,
     Eigen::VectorXd balance = gradient + normals.transpose() * solution.y;
     multipliers.equality = Eigen::VectorXd::Zero(equality_count);
     if (smooth.rows() > 0) {
-        const Eigen::VectorXd smooth_multipliers =
-            smooth.transpose().completeOrthogonalDecomposition().solve(-balance);
+        const Eigen::VectorXd smooth_multipliers = smooth.transpose().completeOrthogonalDecomposition().solve(-balance);
         multipliers.equality = smooth_multipliers.head(equality_count);
         if (sphere) multipliers.sphere = smooth_multipliers[equality_count];
         balance += smooth.transpose() * smooth_multipliers;
@@ -93,7 +93,7 @@ FirstOrder first_order(const Program& program, const Boundary& boundary,
 
 // Directions along x + span(basis) and the sphere, and the Hessian of the Lagrangian on them.
 struct Tangent {
-    Eigen::MatrixXd span;     // orthonormal columns
+    Eigen::MatrixXd span;  // orthonormal columns
     Eigen::MatrixXd hessian;
 };
 
@@ -113,17 +113,18 @@ Tangent tangent_of(const Program& program, const Boundary& boundary, const Eigen
 // What rounding does to the objective between two points of the sphere: its own, and the multiplier
 // times what the sphere's equation is off by, the larger part where the sphere hardly cuts the
 // flat (close to E_min).
-double rounding_between(const Program& program, double sphere_multiplier, const Polished& at, const Eigen::VectorXd& x) {
-    const double own = objective_rounding * (1.0 + std::abs(at.objective)) + sphere_rounding * std::abs(sphere_multiplier);
+double rounding_between(const Program& program, double sphere_multiplier, const Polished& at,
+                        const Eigen::VectorXd& x) {
+    const double own =
+        objective_rounding * (1.0 + std::abs(at.objective)) + sphere_rounding * std::abs(sphere_multiplier);
     if (program.sphere_variables == 0) return own;
     return own + std::abs(sphere_multiplier * (program.sphere_residual(x) - program.sphere_residual(at.x)));
 }
 
 // Newton direction of the KKT system on x + span(basis) with the sphere, or the given descent
 // direction where the system is not positive definite along the sphere.
-Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundary,
-                                 const Eigen::MatrixXd& basis, const Eigen::VectorXd& x,
-                                 double sphere_multiplier, const Eigen::VectorXd& descent) {
+Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundary, const Eigen::MatrixXd& basis,
+                                 const Eigen::VectorXd& x, double sphere_multiplier, const Eigen::VectorXd& descent) {
     const auto [span, reduced] = tangent_of(program, boundary, basis, x, sphere_multiplier);
     if (span.cols() == 0) return Eigen::VectorXd::Zero(x.size());  // a point: nothing to reduce over
     const Eigen::LDLT<Eigen::MatrixXd> factor(reduced);
@@ -133,9 +134,9 @@ Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundar
         return span * factor.solve(-gradient);
     }
     const Eigen::VectorXd along = span * (span.transpose() * descent);
-    const double curvature = along.norm() > 0
-        ? along.dot(program.hessian * along + 2.0 * sphere_multiplier * boundary.on_sphere(along))
-        : 0.0;
+    const double curvature =
+        along.norm() > 0 ? along.dot(program.hessian * along + 2.0 * sphere_multiplier * boundary.on_sphere(along))
+                         : 0.0;
     // Exact minimiser along the line where the curvature allows, else a bold step.
     if (curvature > 1e-12 * along.squaredNorm()) return along * (along.squaredNorm() / curvature);
     return along * (0.5 / std::max(along.norm(), 1e-300));
@@ -143,9 +144,8 @@ Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundar
 
 // Direction along the active rows in which a stationary point is a maximum or saddle: that of the
 // least curvature of the Lagrangian; size 0 where no curvature is negative.
-Eigen::VectorXd escape_direction(const Program& program, const Boundary& boundary,
-                                 const std::vector<Row>& active, const Eigen::VectorXd& x,
-                                 double sphere_multiplier) {
+Eigen::VectorXd escape_direction(const Program& program, const Boundary& boundary, const std::vector<Row>& active,
+                                 const Eigen::VectorXd& x, double sphere_multiplier) {
     const Eigen::MatrixXd basis = boundary.directions(active);
     const auto [span, hessian] = tangent_of(program, boundary, basis, x, sphere_multiplier);
     if (span.cols() == 0) return {};
@@ -156,8 +156,8 @@ Eigen::VectorXd escape_direction(const Program& program, const Boundary& boundar
 }
 
 // Leaves a stationary point that is no minimum along its active rows; false at a minimum.
-bool escaped(const Program& program, const Boundary& boundary, const std::vector<Row>& active,
-             double sphere_multiplier, const PolishOptions& options, Polished& result) {
+bool escaped(const Program& program, const Boundary& boundary, const std::vector<Row>& active, double sphere_multiplier,
+             const PolishOptions& options, Polished& result) {
     const Eigen::VectorXd direction = escape_direction(program, boundary, active, result.x, sphere_multiplier);
     if (direction.size() == 0) return false;
     const Eigen::MatrixXd basis = boundary.directions(active);
@@ -208,12 +208,10 @@ double dual_bound(const Program& program, const Boundary& boundary, const Eigen:
         const double scale = 1.0 + spectrum.eigenvalues().cwiseAbs().maxCoeff();
         return spectrum.eigenvalues()[0] >= -1e-12 * scale ? objective - slip : -no_bound;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(basis.transpose() *
-                                                                  (program.hessian * basis));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(basis.transpose() * (program.hessian * basis));
     const Eigen::VectorXd eigenvalues = spectrum.eigenvalues().array() + 2.0 * multipliers.sphere;
     if (eigenvalues[0] >= 0) return objective - slip;
-    const Eigen::VectorXd c =
-        spectrum.eigenvectors().transpose() * (basis.transpose() * boundary.on_sphere(x));
+    const Eigen::VectorXd c = spectrum.eigenvectors().transpose() * (basis.transpose() * boundary.on_sphere(x));
     // inf over the flat of L with multiplier mu + s is objective - 2 s^2 sum c_i^2/(l_i + 2 s),
     // concave in s > -l_min/2: golden section on a logarithmic scale of s + l_min/2.
     const auto bound = [&](double excess) {
@@ -268,8 +266,7 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
         bool moved = false;
         for (const bool newton : {true, false}) {
             Eigen::VectorXd direction =
-                newton ? newton_direction(program, boundary, basis, result.x,
-                                          order.multipliers.sphere, order.direction)
+                newton ? newton_direction(program, boundary, basis, result.x, order.multipliers.sphere, order.direction)
                        : Eigen::VectorXd(basis * (basis.transpose() * order.direction));
             if (program.objective_gradient(result.x).dot(direction) >= 0) continue;
             std::vector<Row> blocked = working;
@@ -277,11 +274,9 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
             for (int halving = 0; halving < halvings_limit && !moved; ++halving) {
                 const auto& rows = halving == 0 ? blocked : working;
                 Eigen::VectorXd x = boundary.project(rows, result.x + step * direction);
-                if (boundary.retract(boundary.directions(rows), x) &&
-                    program.violation(x) <= options.feasibility) {
+                if (boundary.retract(boundary.directions(rows), x) && program.violation(x) <= options.feasibility) {
                     const double objective = program.objective(x);
-                    const double rounding =
-                        rounding_between(program, order.multipliers.sphere, result, x);
+                    const double rounding = rounding_between(program, order.multipliers.sphere, result, x);
                     // Closer than the root of rounding to an optimum the objective shows no
                     // progress: there a full Newton step is judged by what it leaves of the slope.
                     const auto slope_halved = [&] {
@@ -321,8 +316,7 @@ Polished polish(const Program& program, const Eigen::VectorXd& start, const Poli
     result.multipliers = order.multipliers;
     result.stationary = result.feasible && order.multipliers.residual <= options.stationarity;
     if (result.stationary) {
-        result.lower_bound =
-            dual_bound(program, boundary, result.x, result.multipliers, result.objective);
+        result.lower_bound = dual_bound(program, boundary, result.x, result.multipliers, result.objective);
     }
     return result;
 }

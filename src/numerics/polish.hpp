@@ -32,9 +32,9 @@ struct Polished {
 };
 
 struct PolishOptions {
-    double feasibility = 1e-12;   ///< largest violation, scaled rows
-    double stationarity = 1e-9;   ///< relative KKT residual
-    double activity = 1e-10;      ///< slack below which a row is active
+    double feasibility = 1e-12;  ///< largest violation, scaled rows
+    double stationarity = 1e-9;  ///< relative KKT residual
+    double activity = 1e-10;     ///< slack below which a row is active
     int max_steps = 200;
 };
 
@@ -42,7 +42,6 @@ struct PolishOptions {
 /// with the sphere, blocked by the other rows, until the projection of -gradient on the tangent
 /// cone vanishes. The objective never rises, but for rounding and for the last step to a vertex on the sphere that is
 /// less than 1e-6 away. `start` must be feasible to 1e-9.
-[[nodiscard]] Polished polish(const Program& program, const Eigen::VectorXd& start,
-                              const PolishOptions& options = {});
+[[nodiscard]] Polished polish(const Program& program, const Eigen::VectorXd& start, const PolishOptions& options = {});
 
 }  // namespace nsma

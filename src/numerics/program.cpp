@@ -10,8 +10,8 @@ namespace {
 
 void expect_size(const char* name, Eigen::Index expected, Eigen::Index got) {
     if (expected == got) return;
-    throw std::invalid_argument(std::string(name) + ": expected size " + std::to_string(expected) +
-                                ", got " + std::to_string(got));
+    throw std::invalid_argument(std::string(name) + ": expected size " + std::to_string(expected) + ", got " +
+                                std::to_string(got));
 }
 
 void expect_finite(const char* name, const Eigen::VectorXd& values) {
@@ -36,9 +36,7 @@ double Program::objective(const Eigen::VectorXd& x) const {
     return 0.5 * x.dot(hessian * x) + gradient.dot(x) + constant;
 }
 
-Eigen::VectorXd Program::objective_gradient(const Eigen::VectorXd& x) const {
-    return hessian * x + gradient;
-}
+Eigen::VectorXd Program::objective_gradient(const Eigen::VectorXd& x) const { return hessian * x + gradient; }
 
 double Program::sphere_residual(const Eigen::VectorXd& x) const {
     return sphere_variables > 0 ? x.head(sphere_variables).squaredNorm() - 1.0 : 0.0;
@@ -81,8 +79,7 @@ void validate(const Program& program) {
     for (Eigen::Index j = 0; j < n; ++j) {
         if (program.lower[j] <= program.upper[j]) continue;  // false for NaN too
         throw std::invalid_argument("lower[" + std::to_string(j) + "]: expected <= upper = " +
-                                    std::to_string(program.upper[j]) + ", got " +
-                                    std::to_string(program.lower[j]));
+                                    std::to_string(program.upper[j]) + ", got " + std::to_string(program.lower[j]));
     }
 }
 

@@ -5,17 +5,17 @@
 
 #include <Eigen/Core>
 
-#include "nsma/numerics/solver_options.hpp"
 #include "program.hpp"
+#include "nsma/numerics/solver_options.hpp"
 
 namespace nsma {
 
 /// What a library answered, before anyone believed it.
 struct SolverOutcome {
-    Eigen::VectorXd x;    ///< last point; NaN if the library gave none; size n
-    std::string status;   ///< the library's own word
-    int iterations = 0;   ///< Ipopt iterations, NLopt evaluations
-    double seconds = 0;   ///< wall time
+    Eigen::VectorXd x;   ///< last point; NaN if the library gave none; size n
+    std::string status;  ///< the library's own word
+    int iterations = 0;  ///< Ipopt iterations, NLopt evaluations
+    double seconds = 0;  ///< wall time
 };
 
 /// Interior point method of Ipopt with exact first and second derivatives. One object serves
@@ -46,8 +46,7 @@ enum class NloptMethod {
 
 /// One call of NLopt. Throws like IpoptSolver::solve. ISRES searches a box: with a sphere, unknowns
 /// without a bound get +-1.
-[[nodiscard]] SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program,
-                                             const Eigen::VectorXd& start,
+[[nodiscard]] SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program, const Eigen::VectorXd& start,
                                              const SolverOptions& options = {});
 
 /// Versions of the libraries in use, e.g. "3.11.9".

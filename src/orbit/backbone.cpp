@@ -29,8 +29,7 @@ void require_sign(int gap_sign) {
 double backbone_energy_ratio(int mode, double period_ratio) {
     require_mode(mode);
     if (!std::isfinite(period_ratio) || period_ratio <= 0.0) {
-        throw std::invalid_argument(
-            fmt::format("period_ratio: expected a finite value > 0, got {}", period_ratio));
+        throw std::invalid_argument(fmt::format("period_ratio: expected a finite value > 0, got {}", period_ratio));
     }
     const double k = mode;
     const double denominator = k * k * period_ratio - (2.0 * k + 1.0);
@@ -83,8 +82,7 @@ std::optional<int> mode_of(const Pattern& pattern) {
     if (pattern.free_steps % 2 != 0) {
         return std::nullopt;
     }
-    const std::int64_t product =
-        std::int64_t{pattern.free_steps} / 2 + 2 * std::int64_t{pattern.cells};
+    const std::int64_t product = std::int64_t{pattern.free_steps} / 2 + 2 * std::int64_t{pattern.cells};
     if (product % pattern.period_steps() != 0) {
         return std::nullopt;
     }

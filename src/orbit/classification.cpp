@@ -13,8 +13,7 @@ namespace nsma {
 
 Classification classify(const Orbit& orbit, double tolerance) {
     if (!std::isfinite(tolerance) || tolerance < 0.0) {
-        throw std::invalid_argument(
-            fmt::format("tolerance: expected a finite value >= 0, got {}", tolerance));
+        throw std::invalid_argument(fmt::format("tolerance: expected a finite value >= 0, got {}", tolerance));
     }
     const Kernel& kernel = orbit.kernel;
     const Pattern& pattern = kernel.pattern;
@@ -38,7 +37,8 @@ Classification classify(const Orbit& orbit, double tolerance) {
     result.full_support = kernel.dimension() > 0 && orbit.beta.cwiseAbs().minCoeff() > silence;
     if (const auto motion = least_label(orbit, tolerance)) {
         const MotionLabel& label = motion->label;
-        const bool own = label.free_steps == pattern.free_steps && label.contact_steps == pattern.contact_steps && label.shift_steps == 0;
+        const bool own = label.free_steps == pattern.free_steps && label.contact_steps == pattern.contact_steps &&
+                         label.shift_steps == 0;
         if (!own) result.same_motion_as = label;
     }
     return result;

@@ -74,8 +74,7 @@ Eigen::MatrixXi tip_rows(const Kernel& kernel) {
 
 Eigen::VectorXd tip_history(const Kernel& kernel, const Eigen::VectorXd& beta) {
     if (beta.size() != kernel.dimension()) {
-        throw std::invalid_argument(
-            fmt::format("beta: expected size {}, got {}", kernel.dimension(), beta.size()));
+        throw std::invalid_argument(fmt::format("beta: expected size {}, got {}", kernel.dimension(), beta.size()));
     }
     const int period = kernel.pattern.period_steps();
     const int free_steps = kernel.pattern.free_steps;
@@ -84,8 +83,7 @@ Eigen::VectorXd tip_history(const Kernel& kernel, const Eigen::VectorXd& beta) {
     history[0] = contact;
     for (int n = 0; n + 1 < free_steps; ++n) {
         const int column = kernel.column(n);
-        history[n + 1] =
-            history[n] + (column >= 0 ? 2.0 * kernel.sign[index(n)] * beta[column] : 0.0);
+        history[n + 1] = history[n] + (column >= 0 ? 2.0 * kernel.sign[index(n)] * beta[column] : 0.0);
     }
     history.tail(period + 1 - free_steps).setConstant(contact);  // n = r..n_T
     return history;

@@ -18,9 +18,7 @@ Kernel exact_kernel(const Pattern& pattern) {
     kernel.sign.assign(index(period), 0);
     kernel.amplitude_of.assign(index(kernel.classes), -1);
 
-    const auto next = [period, shift](int n) {
-        return n < period - shift ? n + shift : n - (period - shift);
-    };
+    const auto next = [period, shift](int n) { return n < period - shift ? n + shift : n - (period - shift); };
     for (int first = 0; first < kernel.classes; ++first) {
         // b_{n+2N} = -b_n after a free step, +b_n after a contact step.
         std::int8_t sign = 1;

@@ -59,7 +59,9 @@ std::vector<Rest> contacts_of(const Cycle& cycle) {
     if (std::any_of(all.begin(), all.end(), presses)) {
         std::erase_if(all, [&](const Rest& rest) { return !presses(rest); });
     } else {
-        const int longest = std::max_element(all.begin(), all.end(), [](const Rest& a, const Rest& b) { return a.steps < b.steps; })->steps;
+        const int longest = std::max_element(all.begin(), all.end(), [](const Rest& a, const Rest& b) {
+                                return a.steps < b.steps;
+                            })->steps;
         std::erase_if(all, [longest](const Rest& rest) { return rest.steps < longest; });
     }
     return all;
@@ -125,7 +127,9 @@ std::array<std::uint64_t, 2> fingerprints(const LabelledMotion& motion) {
     std::array<std::uint64_t, 2> result{};
     for (std::size_t grid = 0; grid < 2; ++grid) {
         std::uint64_t hash = 14695981039346656037U;  // FNV-1a
-        const auto add = [&hash](std::int64_t value) { hash = (hash ^ static_cast<std::uint64_t>(value)) * 1099511628211U; };
+        const auto add = [&hash](std::int64_t value) {
+            hash = (hash ^ static_cast<std::uint64_t>(value)) * 1099511628211U;
+        };
         add(motion.label.free_steps);
         add(motion.label.contact_steps);
         for (const double wave : motion.waves) add(std::llround(steps * wave / largest + (grid == 0 ? 0.0 : 0.5)));

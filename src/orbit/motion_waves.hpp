@@ -22,7 +22,8 @@ namespace nsma {
     for (int shift = 1; shift <= period / 2; ++shift) {
         if (period % shift != 0) continue;
         bool repeats = true;
-        for (int n = 0; repeats && n + shift < period; ++n) repeats = std::abs(waves[n + shift] - waves[n]) <= tolerance;
+        for (int n = 0; repeats && n + shift < period; ++n)
+            repeats = std::abs(waves[n + shift] - waves[n]) <= tolerance;
         if (repeats) return shift;
     }
     return period;

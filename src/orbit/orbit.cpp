@@ -17,8 +17,7 @@ Eigen::VectorXd waves(const Orbit& orbit) {
     Eigen::VectorXd result(orbit.kernel.pattern.period_steps());
     for (int n = 0; n < result.size(); ++n) {
         const int column = orbit.kernel.column(n);
-        result[n] =
-            column >= 0 ? orbit.kernel.sign[static_cast<std::size_t>(n)] * alpha[column] : 0.0;
+        result[n] = column >= 0 ? orbit.kernel.sign[static_cast<std::size_t>(n)] * alpha[column] : 0.0;
     }
     return result;
 }
@@ -29,13 +28,11 @@ Orbit make_orbit(const Bar& bar, const Kernel& kernel, const Eigen::VectorXd& be
     validate(bar);
     validate(kernel.pattern);
     if (beta.size() != kernel.dimension()) {
-        throw std::invalid_argument(
-            fmt::format("beta: expected size {}, got {}", kernel.dimension(), beta.size()));
+        throw std::invalid_argument(fmt::format("beta: expected size {}, got {}", kernel.dimension(), beta.size()));
     }
     for (Eigen::Index i = 0; i < beta.size(); ++i) {
         if (!std::isfinite(beta[i])) {
-            throw std::invalid_argument(
-                fmt::format("beta: expected finite values, got {} at entry {}", beta[i], i));
+            throw std::invalid_argument(fmt::format("beta: expected finite values, got {} at entry {}", beta[i], i));
         }
     }
     return {bar, kernel, beta};
@@ -60,9 +57,7 @@ State initial_state(const Orbit& orbit) {
     return state;
 }
 
-double period(const Orbit& orbit) {
-    return orbit.kernel.pattern.period_steps() * orbit.mesh().time_step(orbit.bar);
-}
+double period(const Orbit& orbit) { return orbit.kernel.pattern.period_steps() * orbit.mesh().time_step(orbit.bar); }
 
 double energy(const Orbit& orbit) { return energy_ratio(orbit) * orbit.bar.energy_unit(); }
 
@@ -79,8 +74,7 @@ Eigen::VectorXd contact_force(const Orbit& orbit) {
     const int free_steps = orbit.kernel.pattern.free_steps;
     const int contact_steps = orbit.kernel.pattern.contact_steps;
     Eigen::VectorXd force = Eigen::VectorXd::Zero(free_steps + contact_steps);
-    force.tail(contact_steps) =
-        (-2.0 * orbit.bar.impedance() * orbit.bar.area) * waves(orbit).tail(contact_steps);
+    force.tail(contact_steps) = (-2.0 * orbit.bar.impedance() * orbit.bar.area) * waves(orbit).tail(contact_steps);
     return force;
 }
 

@@ -20,18 +20,15 @@ double Pattern::period_ratio() const { return static_cast<double>(period_steps()
 void validate(const Pattern& pattern) {
     validate(Mesh{pattern.cells});
     if (pattern.free_steps < 1) {
-        throw std::invalid_argument(
-            fmt::format("free_steps: expected at least 1, got {}", pattern.free_steps));
+        throw std::invalid_argument(fmt::format("free_steps: expected at least 1, got {}", pattern.free_steps));
     }
     if (pattern.contact_steps < 1) {
-        throw std::invalid_argument(
-            fmt::format("contact_steps: expected at least 1, got {}", pattern.contact_steps));
+        throw std::invalid_argument(fmt::format("contact_steps: expected at least 1, got {}", pattern.contact_steps));
     }
-    const std::int64_t period_steps =
-        std::int64_t{pattern.free_steps} + std::int64_t{pattern.contact_steps};
+    const std::int64_t period_steps = std::int64_t{pattern.free_steps} + std::int64_t{pattern.contact_steps};
     if (period_steps > max_period_steps) {
-        throw std::invalid_argument(fmt::format("period_steps: expected at most {}, got {}",
-                                                max_period_steps, period_steps));
+        throw std::invalid_argument(
+            fmt::format("period_steps: expected at most {}, got {}", max_period_steps, period_steps));
     }
 }
 
@@ -46,8 +43,8 @@ int kernel_dimension(const Pattern& pattern) {
 std::vector<Pattern> patterns_in(int cells, const PatternRange& range) {
     validate(Mesh{cells});
     if (range.period_hi > max_period_steps) {
-        throw std::invalid_argument(fmt::format("period_hi: expected at most {}, got {}",
-                                                max_period_steps, range.period_hi));
+        throw std::invalid_argument(
+            fmt::format("period_hi: expected at most {}, got {}", max_period_steps, range.period_hi));
     }
     std::vector<Pattern> patterns;
     for (int period = std::max(range.period_lo, 2); period <= range.period_hi; ++period) {

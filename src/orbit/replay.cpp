@@ -74,22 +74,18 @@ double Violations::worst() const { return std::max({periodicity, cond1, cond2, c
 
 Replay replay(const Orbit& orbit, std::optional<double> level, int periods, double tolerance) {
     if (level && !(std::isfinite(*level) && *level > 0.0)) {
-        throw std::invalid_argument(
-            fmt::format("level: expected a finite value > 0, got {}", *level));
+        throw std::invalid_argument(fmt::format("level: expected a finite value > 0, got {}", *level));
     }
     if (!std::isfinite(tolerance) || tolerance < 0.0) {
-        throw std::invalid_argument(
-            fmt::format("tolerance: expected a finite value >= 0, got {}", tolerance));
+        throw std::invalid_argument(fmt::format("tolerance: expected a finite value >= 0, got {}", tolerance));
     }
     const Pattern& pattern = orbit.kernel.pattern;
     const State initial = initial_state(orbit);
 
     const Labelled seen = labelled_period(orbit, initial);
-    const double displacement_scale =
-        orbit.bar.gap != 0.0 ? std::abs(orbit.bar.gap) : seen.largest_tip;
-    const double force_scale = seen.largest_force > no_force * seen.force_of_largest_wave
-                                   ? seen.largest_force
-                                   : seen.force_of_largest_wave;
+    const double displacement_scale = orbit.bar.gap != 0.0 ? std::abs(orbit.bar.gap) : seen.largest_tip;
+    const double force_scale =
+        seen.largest_force > no_force * seen.force_of_largest_wave ? seen.largest_force : seen.force_of_largest_wave;
     Replay result;
     result.violations.periodicity = seen.defect;
     result.violations.cond1 = relative(seen.penetration, displacement_scale);
@@ -114,8 +110,7 @@ Replay replay(const Orbit& orbit, std::optional<double> level, int periods, doub
         relative(result.march.worst_separation, displacement_scale),
         relative(result.march.worst_tension, force_scale),
     });
-    result.accepted =
-        result.violations.worst() <= tolerance && march_worst <= tolerance && result.same_labels;
+    result.accepted = result.violations.worst() <= tolerance && march_worst <= tolerance && result.same_labels;
     return result;
 }
 

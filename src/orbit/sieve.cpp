@@ -68,7 +68,9 @@ Sieve::Place Sieve::walk(int free_places) {
     // The sign that COND3 gives the amplitudes: that of any contact place.
     const int side = sign_[at(free_places)];
     const int window = 2 * cells_ / classes_;
-    const auto sum_to = [this](int end) { return std::accumulate(sign_.begin(), sign_.begin() + end, std::int64_t{0}); };
+    const auto sum_to = [this](int end) {
+        return std::accumulate(sign_.begin(), sign_.begin() + end, std::int64_t{0});
+    };
     const std::int64_t weight = -side * (window / places_ * sum_to(places_) + sum_to(window % places_));
     if (gap_sign_ == 0 ? weight != 0 : gap_sign_ * weight <= 0) return {Finding::wrong_side, 0};
     int height = 0;
@@ -81,8 +83,9 @@ Sieve::Place Sieve::walk(int free_places) {
 
 Sieved Sieve::operator()(int free_steps, int contact_steps) {
     if (free_steps < 1 || contact_steps < 1 || free_steps > max_period_steps - contact_steps) {
-        throw std::invalid_argument(fmt::format("pattern: expected free and contact steps >= 1 and at most {} in all, got {} and {}",
-                                                max_period_steps, free_steps, contact_steps));
+        throw std::invalid_argument(
+            fmt::format("pattern: expected free and contact steps >= 1 and at most {} in all, got {} and {}",
+                        max_period_steps, free_steps, contact_steps));
     }
     if (free_steps + contact_steps != period_) prepare(free_steps + contact_steps);
     const int q = free_steps / classes_;

@@ -29,8 +29,8 @@ double smallest(const Eigen::VectorXd& values) { return values.size() > 0 ? valu
 
 }  // namespace
 
-Eigen::MatrixXd orthogonal_space(const Eigen::MatrixXd& rows, Eigen::Index n,
-                                 const MagnitudeBounds& magnitude, bool& rank_clear) {
+Eigen::MatrixXd orthogonal_space(const Eigen::MatrixXd& rows, Eigen::Index n, const MagnitudeBounds& magnitude,
+                                 bool& rank_clear) {
     rank_clear = true;
     if (rows.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
@@ -45,8 +45,11 @@ Eigen::MatrixXd orthogonal_space(const Eigen::MatrixXd& rows, Eigen::Index n,
 
 MultiplierSet::MultiplierSet(Eigen::MatrixXd normals, Eigen::MatrixXd smooth, Eigen::VectorXd gradient,
                              const MagnitudeBounds& magnitude)
-    : normals_(std::move(normals)), smooth_(std::move(smooth)), gradient_(std::move(gradient)),
-      magnitude_(magnitude), scale_(1.0 + gradient_.norm()) {
+    : normals_(std::move(normals)),
+      smooth_(std::move(smooth)),
+      gradient_(std::move(gradient)),
+      magnitude_(magnitude),
+      scale_(1.0 + gradient_.norm()) {
     bool clear = true;
     const Eigen::MatrixXd basis = orthogonal_space(smooth_, gradient_.size(), magnitude_, clear);
     Eigen::MatrixXd columns = basis.transpose() * normals_.transpose();
@@ -170,9 +173,7 @@ Eigen::VectorXd MultiplierSet::greatest_normals() const {
         cost[i] = -1.0;
         const Greatest found = least_over_set(cost);
         switch (found.status) {
-            case Greatest::Status::finite:
-                best = best.cwiseMax(found.y);
-                break;
+            case Greatest::Status::finite: best = best.cwiseMax(found.y); break;
             case Greatest::Status::infinite: best[i] = scale_; break;
             case Greatest::Status::unclear: best[i] = -scale_; break;
         }

@@ -72,10 +72,12 @@ Side OptimumAnalysis::end_side(const Rates& rate) const {
     for (const double sign : {1.0, -1.0}) {
         const MultiplierSet energies = energy_multipliers(sign, banded);
         if (energies.status() == MultiplierSet::Status::empty) continue;  // no end this way
-        if (energies.status() == MultiplierSet::Status::unclear) return refused("the end of the energy interval is unclear");
+        if (energies.status() == MultiplierSet::Status::unclear)
+            return refused("the end of the energy interval is unclear");
         const auto end = energies.greatest(parts.signed_rows, parts.smooth);
         if (end.status == MultiplierSet::Greatest::Status::infinite) return nowhere();
-        if (end.status == MultiplierSet::Greatest::Status::unclear) return refused("the end of the energy interval is unclear");
+        if (end.status == MultiplierSet::Greatest::Status::unclear)
+            return refused("the end of the energy interval is unclear");
         const double distance = sign * rate.sphere - end.value;
         if (sign > 0) above_least = distance;
         // The tangent cone of a flat orbit set holds orbits of greater energy, by second order.

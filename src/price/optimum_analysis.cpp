@@ -8,8 +8,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include "numerics/polish.hpp"
 #include "relaxed_solver.hpp"
+#include "numerics/polish.hpp"
 
 namespace nsma {
 namespace {
@@ -132,7 +132,8 @@ void OptimumAnalysis::find_place() {
         place_ = Place::corner;
         for (Eigen::Index j = 0; j < x.size() && place_ == Place::corner; ++j) {
             for (const double way : {1.0, -1.0}) {
-                if (descends(normals_, smooth, way * Eigen::VectorXd::Unit(x.size(), j), magnitude_) != Magnitude::zero) {
+                if (descends(normals_, smooth, way * Eigen::VectorXd::Unit(x.size(), j), magnitude_) !=
+                    Magnitude::zero) {
                     place_ = Place::flat;
                 }
             }
@@ -148,7 +149,8 @@ MultiplierSet OptimumAnalysis::multipliers(bool banded) const {
 
 MultiplierSet OptimumAnalysis::energy_multipliers(double sign, bool banded) const {
     if (!banded) return {normals_, equalities_, sign * sphere_, magnitude_};
-    return {stacked(normals_, stacked(equalities_, -equalities_)), Eigen::MatrixXd(0, x.size()), sign * sphere_, magnitude_};
+    return {stacked(normals_, stacked(equalities_, -equalities_)), Eigen::MatrixXd(0, x.size()), sign * sphere_,
+            magnitude_};
 }
 
 void OptimumAnalysis::find_multipliers() {
@@ -255,7 +257,8 @@ Rates OptimumAnalysis::rates(const Shift& direction) const {
         const auto i = active[k];
         if (i >= set.rows.rows()) continue;  // a row of the peak force: no right-hand side
         double rate = direction.rows.size() > 0 ? direction.rows[i] : 0.0;
-        if (set.condition[static_cast<std::size_t>(i)].condition == ConditionRow::Condition::cond1) rate += direction.gap;
+        if (set.condition[static_cast<std::size_t>(i)].condition == ConditionRow::Condition::cond1)
+            rate += direction.gap;
         result.rows[static_cast<Eigen::Index>(k)] = rate / (form.row_norm[i] * form.scale);
     }
     result.sphere = has_sphere_ ? 0.5 * direction.level / level : 0.0;

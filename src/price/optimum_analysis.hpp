@@ -29,11 +29,9 @@ struct Rates {
     Eigen::VectorXd equality;  ///< of COND2 (size 1 or 0)
     Eigen::VectorXd rows;      ///< of the active inequalities
     double sphere = 0;
-    double band = 0;           ///< half width of COND2's band, >= 0
+    double band = 0;  ///< half width of COND2's band, >= 0
 
-    [[nodiscard]] bool nothing() const {
-        return equality.isZero(0) && rows.isZero(0) && sphere == 0 && band == 0;
-    }
+    [[nodiscard]] bool nothing() const { return equality.isZero(0) && rows.isZero(0) && sphere == 0 && band == 0; }
 };
 
 /// One optimum over x = beta/scale: its active rows, its multipliers and what the energy level
@@ -51,8 +49,7 @@ public:
     };
 
     OptimumAnalysis(const RelaxedSet& set, Objective objective, std::optional<double> level,
-                    const Eigen::VectorXd& start, const MagnitudeBounds& magnitude,
-                    const Eigen::VectorXd& reference);
+                    const Eigen::VectorXd& start, const MagnitudeBounds& magnitude, const Eigen::VectorXd& reference);
 
     [[nodiscard]] Rates rates(const Shift& direction) const;
     /// Derivative of the optimal value to the side of `direction`, reported units.
@@ -66,13 +63,13 @@ public:
     double level = 0;
     RelaxedProgram form;
     Eigen::VectorXd x, beta;
-    double value = 0;                   ///< reported
-    std::vector<Eigen::Index> active;   ///< rows of the program
-    std::string refusal;                ///< empty, or why there are no derivatives
-    std::optional<double> kkt_residual; ///< relative; absent where there are no multipliers
-    bool unique = false;                ///< one vector of multipliers
-    bool strict = false;                ///< every active row has a positive multiplier
-    bool isolated = false;              ///< second-order sufficient condition
+    double value = 0;                    ///< reported
+    std::vector<Eigen::Index> active;    ///< rows of the program
+    std::string refusal;                 ///< empty, or why there are no derivatives
+    std::optional<double> kkt_residual;  ///< relative; absent where there are no multipliers
+    bool unique = false;                 ///< one vector of multipliers
+    bool strict = false;                 ///< every active row has a positive multiplier
+    bool isolated = false;               ///< second-order sufficient condition
 
 private:
     [[nodiscard]] bool settle();
@@ -97,7 +94,7 @@ private:
     Place place_ = Place::free;
     Eigen::VectorXd y_, nu_;
     double mu_ = 0;
-    double descent_ = 0;      // root: length of the projection of -gradient on T within the sphere
+    double descent_ = 0;  // root: length of the projection of -gradient on T within the sphere
 };
 
 }  // namespace nsma

@@ -43,8 +43,7 @@ private:
 };
 
 // Adds 2 factor (a - b)^2 / 2 of two signed unknowns to the Hessian.
-void add_square(std::vector<Triplet>& hessian, double factor, int a, double sign_a, int b,
-                double sign_b) {
+void add_square(std::vector<Triplet>& hessian, double factor, int a, double sign_a, int b, double sign_b) {
     if (a >= 0) hessian.emplace_back(a, a, 2 * factor * sign_a * sign_a);
     if (b >= 0) hessian.emplace_back(b, b, 2 * factor * sign_b * sign_b);
     if (a < 0 || b < 0) return;
@@ -52,8 +51,8 @@ void add_square(std::vector<Triplet>& hessian, double factor, int a, double sign
     hessian.emplace_back(b, a, -2 * factor * sign_a * sign_b);
 }
 
-void set_objective(RelaxedProgram& result, const RelaxedSet& set, Objective objective,
-                   double energy, const Eigen::VectorXd& reference) {
+void set_objective(RelaxedProgram& result, const RelaxedSet& set, Objective objective, double energy,
+                   const Eigen::VectorXd& reference) {
     const Kernel& kernel = set.kernel;
     const int m = set.dimension();
     const int steps = kernel.pattern.period_steps();
@@ -66,23 +65,20 @@ void set_objective(RelaxedProgram& result, const RelaxedSet& set, Objective obje
                 return static_cast<double>(kernel.sign[static_cast<std::size_t>(n % steps)]);
             };
             for (int n = 0; n < steps; ++n) {
-                add_square(hessian, 1.0, kernel.column(n), sign(n), kernel.column((n + 1) % steps),
-                           sign(n + 1));
+                add_square(hessian, 1.0, kernel.column(n), sign(n), kernel.column((n + 1) % steps), sign(n + 1));
             }
             result.objective_unit = window * result.scale * result.scale;
             break;
         }
         case Objective::nearest: {
             if (reference.size() != static_cast<Eigen::Index>(window)) {
-                throw std::invalid_argument("reference: expected size " +
-                                            std::to_string(static_cast<int>(window)) + ", got " +
-                                            std::to_string(reference.size()));
+                throw std::invalid_argument("reference: expected size " + std::to_string(static_cast<int>(window)) +
+                                            ", got " + std::to_string(reference.size()));
             }
             // 2N |W beta - ref|^2 with W'W = (2N/g) I; in x the unit is the energy of the level.
             const double per_class = window / kernel.classes;
             for (int j = 0; j < m; ++j) hessian.emplace_back(j, j, 2.0);
-            program.gradient.head(m) =
-                -2.0 / (per_class * result.scale) * (wave_basis(kernel).transpose() * reference);
+            program.gradient.head(m) = -2.0 / (per_class * result.scale) * (wave_basis(kernel).transpose() * reference);
             program.constant = reference.squaredNorm() / (per_class * result.scale * result.scale);
             result.objective_unit = energy;
             break;
@@ -106,11 +102,10 @@ void set_objective(RelaxedProgram& result, const RelaxedSet& set, Objective obje
 
 Eigen::VectorXd RelaxedSet::limits(const Shift& shift) const {
     if (shift.rows.size() != 0 && shift.rows.size() != rows.rows()) {
-        throw std::invalid_argument("rows: expected size " + std::to_string(rows.rows()) +
-                                    ", got " + std::to_string(shift.rows.size()));
+        throw std::invalid_argument("rows: expected size " + std::to_string(rows.rows()) + ", got " +
+                                    std::to_string(shift.rows.size()));
     }
-    Eigen::VectorXd result =
-        shift.rows.size() > 0 ? shift.rows : Eigen::VectorXd::Zero(rows.rows());
+    Eigen::VectorXd result = shift.rows.size() > 0 ? shift.rows : Eigen::VectorXd::Zero(rows.rows());
     for (std::size_t i = 0; i < condition.size(); ++i) {
         if (condition[i].condition == Condition::cond1) {
             result[static_cast<Eigen::Index>(i)] += gap_sign + shift.gap;
@@ -124,9 +119,8 @@ Shift RelaxedSet::shift(const Relaxation& relaxation) const {
     result.band = relaxation.band;
     result.rows.resize(rows.rows());
     for (std::size_t i = 0; i < condition.size(); ++i) {
-        result.rows[static_cast<Eigen::Index>(i)] = condition[i].condition == Condition::cond1
-                                                        ? relaxation.penetration
-                                                        : relaxation.adhesion;
+        result.rows[static_cast<Eigen::Index>(i)] =
+            condition[i].condition == Condition::cond1 ? relaxation.penetration : relaxation.adhesion;
     }
     return result;
 }
@@ -180,11 +174,10 @@ Eigen::VectorXd RelaxedProgram::point(const Eigen::VectorXd& beta) const {
     return x;
 }
 
-RelaxedProgram relaxed_program(const RelaxedSet& set, Objective objective, double level,
-                               const Shift& shift, const Eigen::VectorXd& reference) {
+RelaxedProgram relaxed_program(const RelaxedSet& set, Objective objective, double level, const Shift& shift,
+                               const Eigen::VectorXd& reference) {
     if (!(level > 0) || !std::isfinite(level)) {
-        throw std::invalid_argument("level: expected a finite number > 0, got " +
-                                    std::to_string(level));
+        throw std::invalid_argument("level: expected a finite number > 0, got " + std::to_string(level));
     }
     const bool extreme = is_extreme(objective);
     const bool peak = objective == Objective::least_force;

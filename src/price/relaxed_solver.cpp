@@ -6,8 +6,8 @@
 
 #include <Eigen/QR>
 
-#include "nsma/set/admissible_set.hpp"
 #include "numerics/linear_program.hpp"
+#include "nsma/set/admissible_set.hpp"
 #include "search/orbit_program.hpp"
 
 namespace nsma {
@@ -137,9 +137,8 @@ public:
     }
 
     [[nodiscard]] std::vector<Eigen::VectorXd> take() {
-        std::stable_sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) {
-            return a.squaredNorm() > b.squaredNorm() * (1 + 1e-12);
-        });
+        std::stable_sort(found_.begin(), found_.end(),
+                         [](const auto& a, const auto& b) { return a.squaredNorm() > b.squaredNorm() * (1 + 1e-12); });
         for (auto& x : found_) x *= form_.scale;
         return std::move(found_);
     }
@@ -234,8 +233,7 @@ RelaxedInterval relaxed_interval(const RelaxedSet& set, const Shift& shift, bool
     return result;
 }
 
-RelaxedOptimum relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& interval,
-                               const RelaxedRequest& request) {
+RelaxedOptimum relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& interval, const RelaxedRequest& request) {
     using Status = RelaxedOptimum::Status;
     RelaxedOptimum result;
     if (interval.failed) return result;
@@ -261,8 +259,7 @@ RelaxedOptimum relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& int
     }
     const RelaxedProgram form =
         relaxed_program(set, request.objective, *request.level, request.shift, request.reference);
-    const RelaxedProgram plain =
-        relaxed_program(set, Objective::least_shock, *request.level, request.shift);
+    const RelaxedProgram plain = relaxed_program(set, Objective::least_shock, *request.level, request.shift);
     const Eigen::VectorXd base = interval.least_point / form.scale;
     Eigen::VectorXd top = interval.unbounded ? base : Eigen::VectorXd(interval.vertices.front() / form.scale);
     const auto on_level = [&](const Eigen::VectorXd& x) {

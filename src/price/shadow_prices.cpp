@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "relaxed_solver.hpp"
 #include "optimum_analysis.hpp"
+#include "relaxed_solver.hpp"
 #include "tied_optima.hpp"
 
 namespace nsma {
@@ -87,7 +87,9 @@ OptimumSensitivity::OptimumSensitivity(const RelaxedSet& set, Objective objectiv
         add(other);
         // A copy that its own polish left for a better or a worse orbit is none.
         const double off = std::abs(branches_.back()->value - value);
-        if (branches_.back()->refusal.empty() && off > tie_tolerance * (std::abs(value) + branches_.back()->form.objective_unit)) branches_.pop_back();
+        if (branches_.back()->refusal.empty() &&
+            off > tie_tolerance * (std::abs(value) + branches_.back()->form.objective_unit))
+            branches_.pop_back();
     }
 }
 

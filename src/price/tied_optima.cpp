@@ -21,7 +21,11 @@ using Eigen::VectorXd;
 class Ties {
 public:
     Ties(const RelaxedSet& set, Objective objective, const VectorXd& beta, const VectorXd& reference)
-        : set_(set), objective_(objective), beta_(beta), reference_(reference), value_(value(beta)),
+        : set_(set),
+          objective_(objective),
+          beta_(beta),
+          reference_(reference),
+          value_(value(beta)),
           size_(std::max(beta.cwiseAbs().maxCoeff(), 1e-300)) {}
 
     TiedOptima find() {
@@ -31,7 +35,9 @@ public:
     }
 
 private:
-    [[nodiscard]] double value(const VectorXd& beta) const { return objective_of_waves(set_.kernel, objective_, beta, reference_); }
+    [[nodiscard]] double value(const VectorXd& beta) const {
+        return objective_of_waves(set_.kernel, objective_, beta, reference_);
+    }
 
     void add(const VectorXd& beta) {
         const auto equals = [&](const VectorXd& other) { return (beta - other).cwiseAbs().maxCoeff() <= same * size_; };
@@ -40,7 +46,8 @@ private:
         const VectorXd limits = set_.limits({});
         if (limits.size() > 0 && (set_.rows * beta - limits).maxCoeff() > slack) return;
         if (std::abs(set_.contact.dot(beta) - set_.gap_sign) > slack) return;
-        if (std::abs(value(beta) - value_) > same * (std::abs(value_) + 2 * set_.kernel.pattern.cells * size_ * size_)) return;
+        if (std::abs(value(beta) - value_) > same * (std::abs(value_) + 2 * set_.kernel.pattern.cells * size_ * size_))
+            return;
         result_.others.push_back(beta);
     }
 
@@ -56,7 +63,8 @@ private:
         // The amplitudes of a motion given by its waves, if its waves are those of the kernel.
         const auto take = [&](const auto& moved) {
             VectorXd beta(beta_.size());
-            for (Eigen::Index j = 0; j < beta.size(); ++j) beta[j] = moved(kernel.class_of[static_cast<std::size_t>(j)]);
+            for (Eigen::Index j = 0; j < beta.size(); ++j)
+                beta[j] = moved(kernel.class_of[static_cast<std::size_t>(j)]);
             for (int n = 0; n < period; ++n) {
                 if (std::abs(moved(n) - wave_of(beta, n)) > same * size_) return;
             }
@@ -80,7 +88,8 @@ private:
         const Reduction& reduction = known.reduction;
         const VectorXd gamma = reduction.gamma(beta_);
         VectorXd target = VectorXd::Zero(gamma.size());
-        if (objective_ == Objective::nearest) target = reduction.gamma(wave_basis(set_.kernel).transpose() * reference_);
+        if (objective_ == Objective::nearest)
+            target = reduction.gamma(wave_basis(set_.kernel).transpose() * reference_);
         const double apart = same * std::max(target.cwiseAbs().maxCoeff(), 1e-300);
 
         std::vector<Eigen::Index> order(static_cast<std::size_t>(gamma.size()));
@@ -90,7 +99,8 @@ private:
         for (std::size_t begin = 0; begin < order.size();) {
             std::size_t end = begin + 1;
             while (end < order.size() && target[order[begin]] - target[order[end]] <= apart) ++end;
-            const std::vector<Eigen::Index> group(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end));
+            const std::vector<Eigen::Index> group(order.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                  order.begin() + static_cast<std::ptrdiff_t>(end));
             if (!permute(gamma, group, all)) {
                 result_.refusal = "more than " + std::to_string(most_ties) + " optima tie";
                 return;
@@ -101,12 +111,14 @@ private:
     }
 
     // Every point of `all` with the values of one group of columns in every order; false where they are too many.
-    [[nodiscard]] bool permute(const VectorXd& gamma, const std::vector<Eigen::Index>& group, std::vector<VectorXd>& all) const {
+    [[nodiscard]] bool permute(const VectorXd& gamma, const std::vector<Eigen::Index>& group,
+                               std::vector<VectorXd>& all) const {
         // Values that differ by rounding are one.
         std::vector<double> values;
         std::vector<int> word;
         for (const auto j : group) {
-            const auto found = std::find_if(values.begin(), values.end(), [&](double v) { return std::abs(v - gamma[j]) <= same * size_; });
+            const auto found = std::find_if(values.begin(), values.end(),
+                                            [&](double v) { return std::abs(v - gamma[j]) <= same * size_; });
             word.push_back(static_cast<int>(found - values.begin()));
             if (found == values.end()) values.push_back(gamma[j]);
         }
@@ -114,7 +126,8 @@ private:
         std::vector<VectorXd> permuted;
         do {
             for (VectorXd one : all) {
-                for (std::size_t k = 0; k < group.size(); ++k) one[group[k]] = values[static_cast<std::size_t>(word[k])];
+                for (std::size_t k = 0; k < group.size(); ++k)
+                    one[group[k]] = values[static_cast<std::size_t>(word[k])];
                 permuted.push_back(std::move(one));
             }
             if (permuted.size() > most_ties) return false;
@@ -137,8 +150,9 @@ private:
 TiedOptima tied_optima(const RelaxedSet& set, Objective objective, const VectorXd& beta, const VectorXd& reference) {
     const Eigen::Index window = objective == Objective::nearest ? 2 * Eigen::Index{set.kernel.pattern.cells} : 0;
     if (beta.size() != set.dimension() || (window > 0 && reference.size() != window)) {
-        throw std::invalid_argument("beta, reference: expected sizes " + std::to_string(set.dimension()) + " and " + std::to_string(window) +
-                                    ", got " + std::to_string(beta.size()) + " and " + std::to_string(reference.size()));
+        throw std::invalid_argument("beta, reference: expected sizes " + std::to_string(set.dimension()) + " and " +
+                                    std::to_string(window) + ", got " + std::to_string(beta.size()) + " and " +
+                                    std::to_string(reference.size()));
     }
     return Ties(set, objective, beta, reference).find();
 }

@@ -5,14 +5,14 @@
 
 #include <Eigen/Core>
 
-#include "nsma/price/relaxed_set.hpp"
 #include "nsma/set/objective.hpp"
+#include "nsma/price/relaxed_set.hpp"
 
 namespace nsma {
 
-/// The optima of the same objective value that the symmetries of a program give beside a known one: its time shifts by whole
-/// steps and their reversals that meet COND1-3 of the same pattern and, where the set is a simplex and the objective does
-/// not tell its columns apart, its permutations.
+/// The optima of the same objective value that the symmetries of a program give beside a known one: its time shifts by
+/// whole steps and their reversals that meet COND1-3 of the same pattern and, where the set is a simplex and the
+/// objective does not tell its columns apart, its permutations.
 struct TiedOptima {
     std::vector<Eigen::VectorXd> others;  ///< beta, without the known one
     std::string refusal;                  ///< more than can be compared; empty when `others` are all

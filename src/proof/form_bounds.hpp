@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "nsma/set/admissible_set.hpp"
-#include "nsma/check/certificate.hpp"
 #include "set/known_set.hpp"
+#include "nsma/check/certificate.hpp"
 
 namespace nsma {
 
@@ -31,8 +31,8 @@ private:
 
     const Kernel& kernel_;
     const Reduction& reduction_;
-    std::vector<int> contact_;        // w over all columns of beta
-    std::vector<int> forced_flip_;    // flip of each forced zero, in order
+    std::vector<int> contact_;      // w over all columns of beta
+    std::vector<int> forced_flip_;  // flip of each forced zero, in order
     AdmissibleSet::Shape shape_;
     ChainRows chain_;  // of a chain
 };

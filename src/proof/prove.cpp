@@ -49,13 +49,15 @@ private:
     [[nodiscard]] std::size_t variables() const { return static_cast<std::size_t>(reduction_.variables()); }
     [[nodiscard]] int contact(std::size_t j) const { return reduction_.contact_row[static_cast<Eigen::Index>(j)]; }
 
-    // Multipliers of the projection of delta w. A simplex and a nonempty chain need no row; where a chain is empty, so that
-    // delta w is a positive multiple of the sum of all columns, the row of that sum covers it.
+    // Multipliers of the projection of delta w. A simplex and a nonempty chain need no row; where a chain is empty, so
+    // that delta w is a positive multiple of the sum of all columns, the row of that sum covers it.
     void project(bool empty) {
         RowCombination combination;
         if (empty && set_.shape == AdmissibleSet::Shape::chain) {
             const int whole = chain_rows(reduction_).prefix.back();
-            if (whole >= 0) combination.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(whole)], reduction_.gap_sign * contact(0));
+            if (whole >= 0)
+                combination.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(whole)],
+                                              reduction_.gap_sign * contact(0));
         }
         // On columns that rows force to zero, delta w must be covered too.
         std::vector<Rational> target(static_cast<std::size_t>(kernel_.dimension()));
@@ -68,7 +70,9 @@ private:
     }
 
     // |w|^2 over the reduced columns gives E_min; check() repeats it over all columns.
-    void claim_least() { proof_.certificate.energy_least = energy_factor() / Rational(reduction_.contact_row.squaredNorm()); }
+    void claim_least() {
+        proof_.certificate.energy_least = energy_factor() / Rational(reduction_.contact_row.squaredNorm());
+    }
 
     [[nodiscard]] Rational energy_factor() const {
         return {Integer(4) * kernel_.pattern.cells * kernel_.pattern.cells, kernel_.pattern.class_count()};

@@ -71,9 +71,9 @@ public:
     [[nodiscard]] int integer(const char* key) { return integer(required(key), key); }
     [[nodiscard]] int integer(const Json& value, const char* key) const {
         if (!value.is_number_integer()) fail("a whole number", value, key);
-        const bool fits = value.is_number_unsigned()
-                              ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<int>::max())
-                              : value.get<std::int64_t>() >= std::numeric_limits<int>::min();
+        const bool fits = value.is_number_unsigned() ? value.get<std::uint64_t>() <=
+                                                           static_cast<std::uint64_t>(std::numeric_limits<int>::max())
+                                                     : value.get<std::int64_t>() >= std::numeric_limits<int>::min();
         if (!fits) fail("a whole number of 32 bits", value, key);
         return value.get<int>();
     }

@@ -39,8 +39,10 @@ void add_heat_map(Chart& chart, const HeatMap& map, double left, double right, d
         "set lmargin screen {}\nset rmargin screen {}\nset bmargin screen {}\nset tmargin screen {}\n"
         "set title {} noenhanced offset 0,-0.6\nset xlabel {} noenhanced\n"
         "set xrange [-0.5:{}]\nset yrange [-0.5:{}]\n"
-        "set xtics ({}) scale 0 noenhanced rotate by 40 right font ',10'\nset ytics ({}) scale 0 noenhanced font ',11'\n"
-        "plot '{}.dat' index '{}' using 1:2:(0.5):(0.5):3 with boxxy fs solid border lc rgb '#999999' fc palette notitle, \\\n"
+        "set xtics ({}) scale 0 noenhanced rotate by 40 right font ',10'\nset ytics ({}) scale 0 noenhanced font "
+        "',11'\n"
+        "plot '{}.dat' index '{}' using 1:2:(0.5):(0.5):3 with boxxy fs solid border lc rgb '#999999' fc palette "
+        "notitle, \\\n"
         "    '' index '{}' using 1:2:4:5 with labels tc rgb variable font ',9' notitle\n",
         left, right, bottom, top, gnuplot_text(map.title), gnuplot_text(map.x_label),
         static_cast<double>(map.columns.size()) - 0.5, static_cast<double>(map.rows.size()) - 0.5, x_ticks, y_ticks,

@@ -20,7 +20,7 @@ struct MethodStyle {
 
 /// A heat map: one shaded cell with a number for each value.
 struct HeatMap {
-    std::string name;   ///< of its data block
+    std::string name;  ///< of its data block
     std::string title;
     std::string x_label;
     std::vector<std::string> columns;

@@ -19,20 +19,16 @@ Candidates spread_by_energy(const Candidates& sorted) {
     const double hi = std::min(sorted.back()->energy, 25.0 * lo);
     Candidates chosen;
     for (const double target : {lo, std::sqrt(lo * hi), hi}) {
-        const auto nearest =
-            std::min_element(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) {
-                return std::abs(std::log(a->energy / target)) <
-                       std::abs(std::log(b->energy / target));
-            });
-        if (std::find(chosen.begin(), chosen.end(), *nearest) == chosen.end())
-            chosen.push_back(*nearest);
+        const auto nearest = std::min_element(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) {
+            return std::abs(std::log(a->energy / target)) < std::abs(std::log(b->energy / target));
+        });
+        if (std::find(chosen.begin(), chosen.end(), *nearest) == chosen.end()) chosen.push_back(*nearest);
     }
     return chosen;
 }
 
 void sort_by_energy(Candidates& orbits) {
-    std::stable_sort(orbits.begin(), orbits.end(),
-                     [](const auto* a, const auto* b) { return a->energy < b->energy; });
+    std::stable_sort(orbits.begin(), orbits.end(), [](const auto* a, const auto* b) { return a->energy < b->energy; });
 }
 
 }  // namespace
@@ -65,8 +61,7 @@ OrbitChoice choose_orbits(const StoredSweep& sweep) {
     Candidates chosen;
     for (const StoredOrbit* orbit : others) {
         const int period = orbit->orbit.kernel.pattern.period_steps();
-        if (chosen.size() < 3 &&
-            (chosen.empty() || chosen.back()->orbit.kernel.pattern.period_steps() != period)) {
+        if (chosen.size() < 3 && (chosen.empty() || chosen.back()->orbit.kernel.pattern.period_steps() != period)) {
             chosen.push_back(orbit);
         }
     }

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "nsma/report/scene_file.hpp"
 #include "one_line.hpp"
+#include "nsma/report/scene_file.hpp"
 
 namespace nsma {
 
@@ -28,9 +28,7 @@ std::string csv_number(double value) {
     return std::isfinite(value) ? fmt::format("{}", value + 0.0) : std::string();  // no negative zero
 }
 
-std::string csv_number(const std::optional<double>& value) {
-    return value ? csv_number(*value) : std::string();
-}
+std::string csv_number(const std::optional<double>& value) { return value ? csv_number(*value) : std::string(); }
 
 std::vector<std::string> csv_fields(std::string_view line) {
     std::vector<std::string> fields(1);
@@ -56,9 +54,7 @@ std::vector<std::string> csv_fields(std::string_view line) {
 CsvTable::CsvTable(const std::filesystem::path& file) : name_(file.string()) {
     errno = 0;
     std::ifstream stream(file);
-    if (!stream)
-        throw InputError(
-            one_line(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno))));
+    if (!stream) throw InputError(one_line(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno))));
     int number = 0;
     bool header = true;
     for (std::string line; std::getline(stream, line);) {
@@ -67,16 +63,13 @@ CsvTable::CsvTable(const std::filesystem::path& file) : name_(file.string()) {
         if (line.empty() || line.front() == '#') continue;
         if (header) {
             const std::vector<std::string> names = csv_fields(line);
-            for (std::size_t i = 0; i < names.size(); ++i)
-                column_.emplace(names[i], i);
+            for (std::size_t i = 0; i < names.size(); ++i) column_.emplace(names[i], i);
             header = false;
         } else {
             lines_.emplace_back(number, std::move(line));
         }
     }
-    if (header)
-        throw InputError(
-            one_line(fmt::format("{}: expected a row of column names, got none", name_)));
+    if (header) throw InputError(one_line(fmt::format("{}: expected a row of column names, got none", name_)));
 }
 
 bool CsvTable::next() {
@@ -85,8 +78,8 @@ bool CsvTable::next() {
     fields_ = csv_fields(lines_[next_].second);
     ++next_;
     if (fields_.size() != column_.size()) {
-        throw InputError(one_line(fmt::format("{}:{}: expected {} fields, got {}", name_, line_,
-                                              column_.size(), fields_.size())));
+        throw InputError(
+            one_line(fmt::format("{}:{}: expected {} fields, got {}", name_, line_, column_.size(), fields_.size())));
     }
     return true;
 }
@@ -94,8 +87,7 @@ bool CsvTable::next() {
 const std::string& CsvTable::text(std::string_view column) const {
     const auto found = column_.find(column);
     if (found == column_.end()) {
-        throw InputError(
-            one_line(fmt::format("{}: expected a column {}, got none", name_, column)));
+        throw InputError(one_line(fmt::format("{}: expected a column {}, got none", name_, column)));
     }
     return fields_.at(found->second);
 }
@@ -120,8 +112,8 @@ std::optional<double> CsvTable::number(std::string_view column) const {
 }
 
 void CsvTable::fail(std::string_view column, std::string_view expected) const {
-    throw InputError(one_line(fmt::format("{}:{}: {}: expected {}, got \"{}\"", name_, line_,
-                                          column, expected, text(column))));
+    throw InputError(
+        one_line(fmt::format("{}:{}: {}: expected {}, got \"{}\"", name_, line_, column, expected, text(column))));
 }
 
 }  // namespace nsma

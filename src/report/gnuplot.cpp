@@ -42,16 +42,14 @@ void write_file(const fs::path& path, const std::string& text) {
     bool written = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
     if (file != nullptr) written = std::fclose(file) == 0 && written;
     if (!written) {
-        throw InputError(one_line(
-            fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno))));
+        throw InputError(one_line(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno))));
     }
 }
 
 /// Runs `gnuplot NAME.gp` in the folder; returns its exit status and what it said.
 std::pair<int, std::string> run_gnuplot(const std::string& script, const fs::path& folder) {
     std::array<int, 2> channel{};
-    if (pipe2(channel.data(), O_CLOEXEC) != 0)
-        throw InputError("gnuplot: cannot be started: no pipe");
+    if (pipe2(channel.data(), O_CLOEXEC) != 0) throw InputError("gnuplot: cannot be started: no pipe");
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
@@ -69,8 +67,7 @@ std::pair<int, std::string> run_gnuplot(const std::string& script, const fs::pat
     if (error != 0) {
         close(channel[0]);
         throw InputError(
-            fmt::format("gnuplot: cannot be started: {}; install gnuplot-nox to draw charts",
-                        std::strerror(error)));
+            fmt::format("gnuplot: cannot be started: {}; install gnuplot-nox to draw charts", std::strerror(error)));
     }
     std::string said;
     std::array<char, 4096> buffer{};
@@ -98,11 +95,9 @@ std::string gnuplot_text(std::string_view text) {
 }
 
 ScaledUnit scaled_unit(double largest, const std::string& unit) {
-    static constexpr std::array<const char*, 9> prefixes{"p", "n", "µ", "m", "",
-                                                         "k", "M", "G", "T"};
+    static constexpr std::array<const char*, 9> prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
     if (!std::isfinite(largest) || !(largest > 0.0)) return {1.0, unit};
-    const int step =
-        std::clamp(static_cast<int>(std::floor(std::log10(largest) / 3.0 + 1e-9)), -4, 4);
+    const int step = std::clamp(static_cast<int>(std::floor(std::log10(largest) / 3.0 + 1e-9)), -4, 4);
     // Between 0.1 and 1 the plain unit reads better than thousandths of it.
     const int kept = step == -1 && largest >= 0.1 ? 0 : step;
     return {std::pow(10.0, -3 * kept), prefixes.at(static_cast<std::size_t>(kept + 4)) + unit};
@@ -111,16 +106,12 @@ ScaledUnit scaled_unit(double largest, const std::string& unit) {
 void draw_chart(const Chart& chart, const fs::path& folder) {
     std::error_code code;
     fs::create_directories(folder, code);
-    if (code)
-        throw InputError(
-            one_line(fmt::format("{}: cannot be made: {}", folder.string(), code.message())));
+    if (code) throw InputError(one_line(fmt::format("{}: cannot be made: {}", folder.string(), code.message())));
     const std::string script = chart.name + ".gp";
     write_file(folder / (chart.name + ".dat"), chart.data);
-    write_file(folder / script, fmt::format(fmt::runtime(script_head), chart.name, chart.height,
-                                                chart.height * 8 / 5) +
+    write_file(folder / script, fmt::format(fmt::runtime(script_head), chart.name, chart.height, chart.height * 8 / 5) +
                                     chart.commands + "unset output\n}\n");
-    for (const char* format : {".svg", ".png"})
-        fs::remove(folder / (chart.name + format), code);
+    for (const char* format : {".svg", ".png"}) fs::remove(folder / (chart.name + format), code);
 
     const auto [status, said] = run_gnuplot(script, folder);
     bool drawn = WIFEXITED(status) && WEXITSTATUS(status) == 0;
@@ -131,8 +122,8 @@ void draw_chart(const Chart& chart, const fs::path& folder) {
     if (drawn) return;
     std::string tail = one_line(said);
     if (tail.size() > 300) tail = "..." + tail.substr(tail.size() - 300);
-    throw InputError(one_line(fmt::format("{}: gnuplot failed: {}", (folder / script).string(),
-                                          tail.empty() ? "no message" : tail)));
+    throw InputError(one_line(
+        fmt::format("{}: gnuplot failed: {}", (folder / script).string(), tail.empty() ? "no message" : tail)));
 }
 
 }  // namespace nsma

@@ -14,9 +14,8 @@ const Pattern& pattern_of(const StoredOrbit& stored) { return stored.orbit.kerne
 
 std::string orbit_label(const StoredOrbit& stored, const Bar& bar) {
     const Pattern& pattern = pattern_of(stored);
-    return fmt::format("E{} = {:.3g}{}, T/τ = {:.4g} (r = {}, p = {})",
-                       bar.gap_sign() == 0 ? "" : "/E_g", stored.energy,
-                       bar.gap_sign() == 0 ? " J" : "", pattern.period_ratio(), pattern.free_steps,
+    return fmt::format("E{} = {:.3g}{}, T/τ = {:.4g} (r = {}, p = {})", bar.gap_sign() == 0 ? "" : "/E_g",
+                       stored.energy, bar.gap_sign() == 0 ? " J" : "", pattern.period_ratio(), pattern.free_steps,
                        pattern.contact_steps);
 }
 
@@ -35,8 +34,7 @@ std::vector<double> arriving_waves(const Orbit& orbit) {
     const Eigen::Index last = motion.velocity.rows() - 1;
     std::vector<double> waves;
     for (Eigen::Index n = 0; n < motion.velocity.cols(); ++n) {
-        waves.push_back(
-            (motion.velocity(last, n) - motion.stress(last, n) / orbit.bar.impedance()) / 2.0);
+        waves.push_back((motion.velocity(last, n) - motion.stress(last, n) / orbit.bar.impedance()) / 2.0);
     }
     return waves;
 }
@@ -44,8 +42,8 @@ std::vector<double> arriving_waves(const Orbit& orbit) {
 }  // namespace
 
 Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
-    static constexpr std::array<const char*, 3> lines{
-        "dt 1 lc rgb '#000000'", "dt 2 lc rgb '#0072b2'", "dt 4 lc rgb '#d55e00'"};
+    static constexpr std::array<const char*, 3> lines{"dt 1 lc rgb '#000000'", "dt 2 lc rgb '#0072b2'",
+                                                      "dt 4 lc rgb '#d55e00'"};
     static constexpr std::array<int, 3> marks{7, 5, 9};  // disc, square, triangle
     const Bar& bar = sweep.scene.bar;
     const bool closed = bar.gap_sign() == 0;
@@ -58,8 +56,7 @@ Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
         longest = std::max(longest, pattern_of(*stored).period_ratio());
     }
     const ScaledUnit force = scaled_unit(largest_force, "N");
-    const ScaledUnit length =
-        closed ? scaled_unit(largest_tip, "m") : ScaledUnit{1.0 / bar.displacement_unit(), "|d|"};
+    const ScaledUnit length = closed ? scaled_unit(largest_tip, "m") : ScaledUnit{1.0 / bar.displacement_unit(), "|d|"};
     const double wall = bar.gap * length.factor;
 
     Chart chart{"orbits",
@@ -98,9 +95,8 @@ Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
         tips += curve("tip");
         forces += curve("force");
         // The legend belongs to both panels: it stands once, below, drawn with the second.
-        forces +=
-            fmt::format(", \\\n     NaN with linespoints lw 2 ps 0.8*mark pt {} {} title '{}'",
-                        marks[i], lines[i], orbit_label(stored, bar));
+        forces += fmt::format(", \\\n     NaN with linespoints lw 2 ps 0.8*mark pt {} {} title '{}'", marks[i],
+                              lines[i], orbit_label(stored, bar));
     }
     const double head = 0.12 * std::max((bar.gap - lowest) * length.factor, 1e-9);
     const double force_scale = std::max(largest_force * force.factor, 1e-9);
@@ -138,13 +134,12 @@ unset multiplot
 )",
         fmt::arg("time", 1.01 * longest),
         fmt::arg("title", gnuplot_text(fmt::format("{}: {}", sweep.scene.title, choice.what))),
-        fmt::arg("ylabel", closed ? fmt::format("tip displacement x ({})", length.unit)
-                                  : std::string("tip displacement x/|d|")),
-        fmt::arg("lowest", lowest * length.factor - head), fmt::arg("top", wall + head),
-        fmt::arg("wall", wall), fmt::arg("label", wall + 0.5 * head), fmt::arg("tips", tips),
-        fmt::arg("unit", force.unit), fmt::arg("step", tick_step(force_scale)),
-        fmt::arg("pushed", -1.15 * force_scale), fmt::arg("slack", 0.1 * force_scale),
-        fmt::arg("forces", forces));
+        fmt::arg("ylabel",
+                 closed ? fmt::format("tip displacement x ({})", length.unit) : std::string("tip displacement x/|d|")),
+        fmt::arg("lowest", lowest * length.factor - head), fmt::arg("top", wall + head), fmt::arg("wall", wall),
+        fmt::arg("label", wall + 0.5 * head), fmt::arg("tips", tips), fmt::arg("unit", force.unit),
+        fmt::arg("step", tick_step(force_scale)), fmt::arg("pushed", -1.15 * force_scale),
+        fmt::arg("slack", 0.1 * force_scale), fmt::arg("forces", forces));
     return chart;
 }
 
@@ -160,11 +155,9 @@ Chart space_time_chart(const StoredSweep& sweep, const StoredOrbit& stored) {
     };
     // The same resolution in place and time, about 200 000 samples, a whole number of samples a
     // cell where it can be.
-    const int wanted =
-        static_cast<int>(std::clamp(std::sqrt(2e5 / pattern.period_ratio()), 20.0, 400.0));
+    const int wanted = static_cast<int>(std::clamp(std::sqrt(2e5 / pattern.period_ratio()), 20.0, 400.0));
     const int columns = cells < wanted ? cells * ((wanted + cells - 1) / cells) : wanted;
-    const int rows =
-        static_cast<int>(std::clamp(std::round(columns * pattern.period_ratio()), 2.0, 1000.0));
+    const int rows = static_cast<int>(std::clamp(std::round(columns * pattern.period_ratio()), 2.0, 1000.0));
     const double impedance = orbit.bar.impedance();
     Eigen::MatrixXd stress(rows, columns);
     for (int row = 0; row < rows; ++row) {
@@ -172,21 +165,19 @@ Chart space_time_chart(const StoredSweep& sweep, const StoredOrbit& stored) {
         for (int column = 0; column < columns; ++column) {
             // Off the middle of a sample, so that no front passes exactly through a sample.
             const double place = (column + 0.25) * cells / columns;
-            stress(row, column) =
-                -impedance * (wave_at(now + cells - place) + wave_at(now + cells + place));
+            stress(row, column) = -impedance * (wave_at(now + cells - place) + wave_at(now + cells + place));
         }
     }
     const double largest = stress.cwiseAbs().maxCoeff();
     const ScaledUnit unit = scaled_unit(largest, "Pa");
 
     Chart chart{"space-time",
-                fmt::format("# {}: stress [{}]; {} rows over one period, {} columns over the bar\n",
-                            sweep.scene.title, unit.unit, rows, columns),
+                fmt::format("# {}: stress [{}]; {} rows over one period, {} columns over the bar\n", sweep.scene.title,
+                            unit.unit, rows, columns),
                 ""};
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
-            chart.data +=
-                fmt::format("{}{:.5g}", column == 0 ? "" : " ", stress(row, column) * unit.factor + 0.0);
+            chart.data += fmt::format("{}{:.5g}", column == 0 ? "" : " ", stress(row, column) * unit.factor + 0.0);
         }
         chart.data += '\n';
     }
@@ -217,10 +208,9 @@ set label 1 'contact' at graph 1.03, first {contact} left
 set label 2 'free' at graph 1.03, first {free} left textcolor rgb '#555555'
 plot 'space-time.dat' matrix using (($1 + 0.5)*{width}):(($2 + 0.5)*{height}):3 with image
 )",
-        fmt::arg("title", orbit_label(stored, orbit.bar)), fmt::arg("unit", unit.unit),
-        fmt::arg("period", period), fmt::arg("bound", bound), fmt::arg("touch", touch),
-        fmt::arg("contact", (touch + period) / 2.0), fmt::arg("free", touch / 2.0),
-        fmt::arg("width", 1.0 / columns), fmt::arg("height", period / rows));
+        fmt::arg("title", orbit_label(stored, orbit.bar)), fmt::arg("unit", unit.unit), fmt::arg("period", period),
+        fmt::arg("bound", bound), fmt::arg("touch", touch), fmt::arg("contact", (touch + period) / 2.0),
+        fmt::arg("free", touch / 2.0), fmt::arg("width", 1.0 / columns), fmt::arg("height", period / rows));
     return chart;
 }
 

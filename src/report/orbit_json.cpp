@@ -17,8 +17,7 @@ Json number(const std::optional<double>& value) { return value ? number(*value) 
 
 Json numbers(const Eigen::VectorXd& values) {
     Json list = Json::array();
-    for (const double value : values)
-        list.push_back(number(value));
+    for (const double value : values) list.push_back(number(value));
     return list;
 }
 
@@ -37,9 +36,7 @@ Json solver_json(const SolverRun& run, bool with_seconds) {
 Json violations_json(const std::optional<Replay>& replay) {
     Json violations;
     const Violations measured = replay ? replay->violations : Violations{};
-    const auto set = [&](const char* key, double value) {
-        violations[key] = replay ? number(value) : Json(nullptr);
-    };
+    const auto set = [&](const char* key, double value) { violations[key] = replay ? number(value) : Json(nullptr); };
     set("periodicity", measured.periodicity);
     set("cond1", measured.cond1);
     set("cond2", measured.cond2);
@@ -49,9 +46,7 @@ Json violations_json(const std::optional<Replay>& replay) {
 }
 
 // Fractions of the energy unit, null without a proof.
-Json exact_text(const std::string& fraction) {
-    return fraction.empty() ? Json(nullptr) : Json(fraction);
-}
+Json exact_text(const std::string& fraction) { return fraction.empty() ? Json(nullptr) : Json(fraction); }
 
 Json optimality_json(const std::optional<Optimality>& optimality) {
     if (!optimality) return nullptr;
@@ -74,8 +69,10 @@ Json classification_json(const std::optional<Classification>& kind) {
 Json same_motion_json(const std::optional<Classification>& kind) {
     if (!kind || !kind->same_motion_as) return nullptr;
     const MotionLabel& label = *kind->same_motion_as;
-    return {{"free_steps", label.free_steps}, {"contact_steps", label.contact_steps},
-            {"shift_steps", label.shift_steps}, {"reversed", label.reversed}};
+    return {{"free_steps", label.free_steps},
+            {"contact_steps", label.contact_steps},
+            {"shift_steps", label.shift_steps},
+            {"reversed", label.reversed}};
 }
 
 }  // namespace
@@ -83,9 +80,7 @@ Json same_motion_json(const std::optional<Classification>& kind) {
 std::string orbit_json(const OrbitAnswer& answer, const Bar& bar, bool with_seconds, int indent) {
     const bool closed = bar.gap_sign() == 0;
     const Pattern& pattern = answer.pattern;
-    const auto ratio = [closed](const std::optional<double>& value) {
-        return closed ? Json(nullptr) : number(value);
-    };
+    const auto ratio = [closed](const std::optional<double>& value) { return closed ? Json(nullptr) : number(value); };
 
     Json json;
     json["cells"] = pattern.cells;
@@ -103,10 +98,8 @@ std::string orbit_json(const OrbitAnswer& answer, const Bar& bar, bool with_seco
     json["level"] = number(answer.level);
     json["energy_ratio"] = ratio(answer.energy);
     json["energy_ratio_min"] = ratio(answer.interval.least);
-    json["energy_ratio_max"] =
-        answer.interval.unbounded ? Json(nullptr) : ratio(answer.interval.greatest);
-    json["energy_joule"] =
-        answer.energy ? number(*answer.energy * bar.energy_unit()) : Json(nullptr);
+    json["energy_ratio_max"] = answer.interval.unbounded ? Json(nullptr) : ratio(answer.interval.greatest);
+    json["energy_joule"] = answer.energy ? number(*answer.energy * bar.energy_unit()) : Json(nullptr);
     json["objective"]["name"] = name(answer.objective);
     json["objective"]["value"] = number(answer.objective_value);
     json["method"] = answer.method;
@@ -119,12 +112,10 @@ std::string orbit_json(const OrbitAnswer& answer, const Bar& bar, bool with_seco
     json["energy_bound"] = number(answer.interval.bound);
     json["optimality"] = optimality_json(answer.optimality);
     json["solvers"] = Json::array();
-    for (const SolverRun& run : answer.solvers)
-        json["solvers"].push_back(solver_json(run, with_seconds));
+    for (const SolverRun& run : answer.solvers) json["solvers"].push_back(solver_json(run, with_seconds));
     json["agreement"] = name(answer.agreement);
     const double unit = closed ? 1.0 : bar.displacement_unit();
-    json["tip_displacement"] =
-        answer.orbit ? numbers(tip_displacement(*answer.orbit) / unit) : Json::array();
+    json["tip_displacement"] = answer.orbit ? numbers(tip_displacement(*answer.orbit) / unit) : Json::array();
     json["contact_force"] = answer.orbit ? numbers(contact_force(*answer.orbit)) : Json::array();
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }

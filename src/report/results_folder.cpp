@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "nsma/report/scene_file.hpp"
 #include "one_line.hpp"
+#include "nsma/report/scene_file.hpp"
 
 namespace nsma {
 
@@ -23,9 +23,7 @@ void fail(const fs::path& path, const std::string& what) {
     throw InputError(one_line(fmt::format("{}: {}", path.string(), what)));
 }
 
-void fail_errno(const fs::path& path) {
-    fail(path, fmt::format("cannot be written: {}", std::strerror(errno)));
-}
+void fail_errno(const fs::path& path) { fail(path, fmt::format("cannot be written: {}", std::strerror(errno))); }
 
 std::optional<std::string> contents(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -47,8 +45,8 @@ void write_whole(const fs::path& path, const std::string& text) {
     const fs::path part = part_of(path);
     std::FILE* file = std::fopen(part.c_str(), "wb");
     if (file == nullptr) fail_errno(part);
-    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() &&
-                         std::fflush(file) == 0 && (fsync(fileno(file)) == 0 || errno == EINVAL);
+    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0 &&
+                         (fsync(fileno(file)) == 0 || errno == EINVAL);
     const int code = errno;
     if (std::fclose(file) != 0 || !written) {
         if (!written) errno = code;
@@ -76,11 +74,9 @@ void write_scene(const fs::path& copy, const std::string& text) {
 }  // namespace
 
 void prepare_results_folder(const fs::path& folder, const Scene& scene, std::span<const char* const> files) {
-    if (scene.text.empty())
-        throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
+    if (scene.text.empty()) throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
     std::error_code code;
-    if (fs::exists(folder, code) && !fs::is_directory(folder, code))
-        fail(folder, "expected a folder, got a file");
+    if (fs::exists(folder, code) && !fs::is_directory(folder, code)) fail(folder, "expected a folder, got a file");
     fs::create_directories(folder, code);
     if (code) fail(folder, fmt::format("cannot be made: {}", code.message()));
 
@@ -88,8 +84,7 @@ void prepare_results_folder(const fs::path& folder, const Scene& scene, std::spa
     if (!fs::exists(copy, code)) {
         for (const char* file : files) {
             if (fs::exists(folder / file, code) && !fs::exists(copy, code)) {
-                fail(folder / file,
-                     "is in the way: the folder has no scene.toml that would tell its scene");
+                fail(folder / file, "is in the way: the folder has no scene.toml that would tell its scene");
             }
         }
         write_scene(copy, scene.text);

@@ -26,6 +26,7 @@ void write_whole(const std::filesystem::path& path, const std::string& text);
 
 /// Makes the folder of a study and keeps a copy of its scene there. Throws InputError where it holds the results of
 /// another scene or, without a scene, one of `files`; std::invalid_argument on a scene without text.
-void prepare_results_folder(const std::filesystem::path& folder, const Scene& scene, std::span<const char* const> files);
+void prepare_results_folder(const std::filesystem::path& folder, const Scene& scene,
+                            std::span<const char* const> files);
 
 }  // namespace nsma

@@ -26,8 +26,7 @@ using Names = std::span<const std::string_view>;
 std::string describe(const toml::node& node) {
     if (const auto* text = node.as_string()) {
         const std::string& value = text->get();
-        return value.size() > 60 ? fmt::format("\"{}...\"", value.substr(0, 60))
-                                 : fmt::format("\"{}\"", value);
+        return value.size() > 60 ? fmt::format("\"{}...\"", value.substr(0, 60)) : fmt::format("\"{}\"", value);
     }
     if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
     if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
@@ -42,16 +41,14 @@ class Reader {
 public:
     explicit Reader(const std::string& where) : where_(where) {}
 
-    [[noreturn]] void fail(const toml::node& node, const std::string& key,
-                           std::string_view expected, std::string_view got) const {
+    [[noreturn]] void fail(const toml::node& node, const std::string& key, std::string_view expected,
+                           std::string_view got) const {
         const auto line = node.source().begin.line;
-        throw InputError(one_line(
-            line == 0
-                ? fmt::format("{}: {}: expected {}, got {}", where_, key, expected, got)
-                : fmt::format("{}:{}: {}: expected {}, got {}", where_, line, key, expected, got)));
+        throw InputError(
+            one_line(line == 0 ? fmt::format("{}: {}: expected {}, got {}", where_, key, expected, got)
+                               : fmt::format("{}:{}: {}: expected {}, got {}", where_, line, key, expected, got)));
     }
-    [[noreturn]] void fail(const toml::node& node, const std::string& key,
-                           std::string_view expected) const {
+    [[noreturn]] void fail(const toml::node& node, const std::string& key, std::string_view expected) const {
         fail(node, key, expected, describe(node));
     }
 
@@ -59,15 +56,14 @@ public:
     void only(const toml::table& table, const std::string& path, Names known) const {
         for (const auto& [key, node] : table) {
             if (std::find(known.begin(), known.end(), key.str()) == known.end()) {
-                fail(node,
-                     path.empty() ? std::string(key.str()) : path + "." + std::string(key.str()),
+                fail(node, path.empty() ? std::string(key.str()) : path + "." + std::string(key.str()),
                      fmt::format("one of {}", fmt::join(known, ", ")), "an unknown key");
             }
         }
     }
 
-    [[nodiscard]] const toml::node& need(const toml::table& table, const std::string& path,
-                                         std::string_view key, std::string_view expected) const {
+    [[nodiscard]] const toml::node& need(const toml::table& table, const std::string& path, std::string_view key,
+                                         std::string_view expected) const {
         if (const toml::node* node = table.get(key)) return *node;
         fail(table, path.empty() ? std::string(key) : fmt::format("{}.{}", path, key), expected,
              "nothing: the key is missing");
@@ -79,36 +75,33 @@ public:
         fail(node, std::string(key), fmt::format("a table [{}]", key));
     }
 
-    [[nodiscard]] double number(const toml::node& node, const std::string& key,
-                                std::string_view expected, double greater_than) const {
+    [[nodiscard]] double number(const toml::node& node, const std::string& key, std::string_view expected,
+                                double greater_than) const {
         double value = std::nan("");
         if (const auto* real = node.as_floating_point()) value = real->get();
         if (const auto* whole = node.as_integer()) value = static_cast<double>(whole->get());
         if (!std::isfinite(value) || !(value > greater_than)) fail(node, key, expected);
         return value;
     }
-    [[nodiscard]] double positive(const toml::table& table, const std::string& path,
-                                  std::string_view key) const {
-        return number(need(table, path, key, positive_number), fmt::format("{}.{}", path, key),
-                      positive_number, 0.0);
+    [[nodiscard]] double positive(const toml::table& table, const std::string& path, std::string_view key) const {
+        return number(need(table, path, key, positive_number), fmt::format("{}.{}", path, key), positive_number, 0.0);
     }
 
-    [[nodiscard]] long integer(const toml::node& node, const std::string& key, long lo,
-                               long hi) const {
+    [[nodiscard]] long integer(const toml::node& node, const std::string& key, long lo, long hi) const {
         const auto* whole = node.as_integer();
         if (whole == nullptr || whole->get() < lo || whole->get() > hi) {
             fail(node, key, fmt::format("an integer from {} to {}", lo, hi));
         }
         return static_cast<long>(whole->get());
     }
-    [[nodiscard]] long integer(const toml::table& table, const std::string& path,
-                               std::string_view key, long lo, long hi) const {
+    [[nodiscard]] long integer(const toml::table& table, const std::string& path, std::string_view key, long lo,
+                               long hi) const {
         const auto& node = need(table, path, key, fmt::format("an integer from {} to {}", lo, hi));
         return integer(node, fmt::format("{}.{}", path, key), lo, hi);
     }
 
-    [[nodiscard]] std::string text(const toml::table& table, const std::string& path,
-                                   std::string_view key, std::string_view expected) const {
+    [[nodiscard]] std::string text(const toml::table& table, const std::string& path, std::string_view key,
+                                   std::string_view expected) const {
         const auto& node = need(table, path, key, expected);
         const auto* found = node.as_string();
         const std::string name = path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
@@ -118,8 +111,7 @@ public:
         return found->get();
     }
 
-    [[nodiscard]] std::array<double, 2> range(const toml::node& node,
-                                              const std::string& key) const {
+    [[nodiscard]] std::array<double, 2> range(const toml::node& node, const std::string& key) const {
         constexpr const char* expected = "[lo, hi] with 0 <= lo <= hi and hi > 0, in units of tau";
         const auto* list = node.as_array();
         if (list == nullptr || list->size() != 2) fail(node, key, expected);
@@ -135,8 +127,7 @@ private:
 };
 
 Bar read_bar(const Reader& reader, const toml::table& root) {
-    static constexpr std::array<std::string_view, 5> known{"length", "young_modulus", "density",
-                                                           "area", "gap"};
+    static constexpr std::array<std::string_view, 5> known{"length", "young_modulus", "density", "area", "gap"};
     const toml::table& table = reader.table(root, "bar");
     reader.only(table, "bar", known);
     Bar bar;
@@ -144,8 +135,8 @@ Bar read_bar(const Reader& reader, const toml::table& root) {
     bar.young_modulus = reader.positive(table, "bar", "young_modulus");
     bar.density = reader.positive(table, "bar", "density");
     bar.area = reader.positive(table, "bar", "area");
-    bar.gap = reader.number(reader.need(table, "bar", "gap", "a finite number"), "bar.gap",
-                            "a finite number", -std::numeric_limits<double>::infinity());
+    bar.gap = reader.number(reader.need(table, "bar", "gap", "a finite number"), "bar.gap", "a finite number",
+                            -std::numeric_limits<double>::infinity());
     try {
         validate(bar);
     } catch (const std::invalid_argument& error) {
@@ -163,23 +154,19 @@ PatternSelection read_patterns(const Reader& reader, const toml::table& root, in
     const toml::node* period = table.get("period");
     const toml::node* list = table.get("list");
     const int count = (mode != nullptr) + (period != nullptr) + (list != nullptr);
-    if (count != 1)
-        reader.fail(table, "patterns", one_of,
-                    count == 0 ? "none" : fmt::format("{} of them", count));
+    if (count != 1) reader.fail(table, "patterns", one_of, count == 0 ? "none" : fmt::format("{} of them", count));
     const toml::node* contact = table.get("contact");
     if (contact != nullptr && period == nullptr) {
         reader.fail(*contact, "patterns.contact", "it beside patterns.period only", "it without");
     }
     if (mode != nullptr) {
-        return ModeSelection{
-            static_cast<int>(reader.integer(*mode, "patterns.mode", 1, max_cells))};
+        return ModeSelection{static_cast<int>(reader.integer(*mode, "patterns.mode", 1, max_cells))};
     }
     if (period != nullptr) {
         PeriodSelection selection{reader.range(*period, "patterns.period"), std::nullopt};
         if (contact != nullptr) selection.contact = reader.range(*contact, "patterns.contact");
         if (selection.period[1] * cells > max_period_steps) {
-            reader.fail(*period, "patterns.period",
-                        fmt::format("at most {} time steps", max_period_steps),
+            reader.fail(*period, "patterns.period", fmt::format("at most {} time steps", max_period_steps),
                         fmt::format("{} x {} cells", selection.period[1], cells));
         }
         return selection;
@@ -199,8 +186,7 @@ PatternSelection read_patterns(const Reader& reader, const toml::table& root, in
             steps[i] = reader.integer(entry, "patterns.list", 1, max_period_steps);
         }
         if (steps[0] + steps[1] > max_period_steps) {
-            reader.fail(row, "patterns.list",
-                        fmt::format("at most {} time steps", max_period_steps),
+            reader.fail(row, "patterns.list", fmt::format("at most {} time steps", max_period_steps),
                         fmt::format("{} + {}", steps[0], steps[1]));
         }
         selection.steps.emplace_back(static_cast<int>(steps[0]), static_cast<int>(steps[1]));
@@ -221,10 +207,8 @@ bool read_all_kinds(const Reader& reader, const toml::table& root) {
 std::vector<double> spaced(double from, double to, long count, bool logarithmic) {
     std::vector<double> levels;
     for (long i = 0; i < count; ++i) {
-        const double part =
-            count == 1 ? 0.0 : static_cast<double>(i) / static_cast<double>(count - 1);
-        levels.push_back(logarithmic ? from * std::pow(to / from, part)
-                                     : from + (to - from) * part);
+        const double part = count == 1 ? 0.0 : static_cast<double>(i) / static_cast<double>(count - 1);
+        levels.push_back(logarithmic ? from * std::pow(to / from, part) : from + (to - from) * part);
     }
     levels.front() = from;
     levels.back() = to;
@@ -232,24 +216,20 @@ std::vector<double> spaced(double from, double to, long count, bool logarithmic)
 }
 
 std::vector<double> read_levels(const Reader& reader, const toml::table& root) {
-    static constexpr std::array<std::string_view, 5> known{"list", "from", "to", "count",
-                                                           "spacing"};
+    static constexpr std::array<std::string_view, 5> known{"list", "from", "to", "count", "spacing"};
     const toml::table& table = reader.table(root, "levels");
     reader.only(table, "levels", known);
     if (const toml::node* list = table.get("list")) {
-        if (table.size() != 1)
-            reader.fail(table, "levels", "either list or from, to, count, spacing", "both");
+        if (table.size() != 1) reader.fail(table, "levels", "either list or from, to, count, spacing", "both");
         const auto* array = list->as_array();
-        if (array == nullptr || array->empty())
-            reader.fail(*list, "levels.list", "a list of finite numbers > 0");
+        if (array == nullptr || array->empty()) reader.fail(*list, "levels.list", "a list of finite numbers > 0");
         std::vector<double> levels;
         for (const toml::node& entry : *array) {
             levels.push_back(reader.number(entry, "levels.list", positive_number, 0.0));
         }
         return levels;
     }
-    if (table.empty())
-        reader.fail(table, "levels", "either list or from, to, count, spacing", "neither");
+    if (table.empty()) reader.fail(table, "levels", "either list or from, to, count, spacing", "neither");
     const double from = reader.positive(table, "levels", "from");
     const double to = reader.positive(table, "levels", "to");
     const long count = reader.integer(table, "levels", "count", 1, max_levels);
@@ -258,20 +238,16 @@ std::vector<double> read_levels(const Reader& reader, const toml::table& root) {
         reader.fail(*table.get("spacing"), "levels.spacing", "\"log\" or \"linear\"");
     }
     if (from > to) {
-        reader.fail(*table.get("to"), "levels.to",
-                    fmt::format("a number >= levels.from = {}", from));
+        reader.fail(*table.get("to"), "levels.to", fmt::format("a number >= levels.from = {}", from));
     }
-    if (from == to && count != 1)
-        reader.fail(*table.get("count"), "levels.count", "1, since from = to");
-    if (from != to && count == 1)
-        reader.fail(*table.get("count"), "levels.count", "at least 2, since from < to");
+    if (from == to && count != 1) reader.fail(*table.get("count"), "levels.count", "1, since from = to");
+    if (from != to && count == 1) reader.fail(*table.get("count"), "levels.count", "at least 2, since from < to");
     return spaced(from, to, count, spacing == "log");
 }
 
 Objective read_objective(const Reader& reader, const toml::table& root) {
     static constexpr std::array<std::string_view, 1> known{"objective"};
-    constexpr const char* names =
-        "\"least-shock\", \"nearest\", \"least-force\", \"min-energy\" or \"max-energy\"";
+    constexpr const char* names = "\"least-shock\", \"nearest\", \"least-force\", \"min-energy\" or \"max-energy\"";
     const toml::table& table = reader.table(root, "program");
     reader.only(table, "program", known);
     const std::string text = reader.text(table, "program", "objective", names);
@@ -283,8 +259,7 @@ Objective read_objective(const Reader& reader, const toml::table& root) {
 }  // namespace
 
 Scene parse_scene(std::string_view text, const std::string& where) {
-    static constexpr std::array<std::string_view, 6> known{"title",    "bar",    "mesh",
-                                                           "patterns", "levels", "program"};
+    static constexpr std::array<std::string_view, 6> known{"title", "bar", "mesh", "patterns", "levels", "program"};
     static constexpr std::array<std::string_view, 1> mesh_keys{"cells"};
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
         throw InputError(one_line(fmt::format("{}: expected a scene, got an empty file", where)));
@@ -316,23 +291,17 @@ Scene read_scene(const std::filesystem::path& file) {
     const std::string where = file.string();
     std::error_code code;
     if (std::filesystem::is_directory(file, code)) {
-        throw InputError(
-            one_line(fmt::format("{}: expected a scene file, got a directory", where)));
+        throw InputError(one_line(fmt::format("{}: expected a scene file, got a directory", where)));
     }
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
-    if (!stream)
-        throw InputError(
-            one_line(fmt::format("{}: cannot be read: {}", where, std::strerror(errno))));
+    if (!stream) throw InputError(one_line(fmt::format("{}: cannot be read: {}", where, std::strerror(errno))));
     std::string text(max_scene_bytes + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (stream.bad())
-        throw InputError(
-            one_line(fmt::format("{}: cannot be read: {}", where, std::strerror(errno))));
+    if (stream.bad()) throw InputError(one_line(fmt::format("{}: cannot be read: {}", where, std::strerror(errno))));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > max_scene_bytes) {
-        throw InputError(one_line(
-            fmt::format("{}: expected at most {} bytes, got more", where, max_scene_bytes)));
+        throw InputError(one_line(fmt::format("{}: expected at most {} bytes, got more", where, max_scene_bytes)));
     }
     return parse_scene(text, where);
 }

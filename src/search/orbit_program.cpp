@@ -57,8 +57,7 @@ void add_square(std::vector<Triplet>& hessian, double factor, const Term& a, con
     add(b, a, -1);
 }
 
-SparseRows scaled_rows(const Eigen::MatrixXi& rows, Eigen::Index variables,
-                       const std::vector<int>& capped) {
+SparseRows scaled_rows(const Eigen::MatrixXi& rows, Eigen::Index variables, const std::vector<int>& capped) {
     std::vector<Triplet> entries;
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
         const double norm = rows.row(i).cast<double>().norm();
@@ -110,9 +109,7 @@ void set_constraints(OrbitProgram& result, const Reduction& reduction, bool peak
 
 }  // namespace
 
-Eigen::VectorXd OrbitProgram::gamma(const Eigen::VectorXd& x) const {
-    return scale * x.head(orbit_variables);
-}
+Eigen::VectorXd OrbitProgram::gamma(const Eigen::VectorXd& x) const { return scale * x.head(orbit_variables); }
 
 Eigen::VectorXd OrbitProgram::point(const Eigen::VectorXd& gamma) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(program.variables());
@@ -128,12 +125,10 @@ Eigen::VectorXd OrbitProgram::point(const Eigen::VectorXd& gamma) const {
 }
 
 OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Objective objective,
-                           std::optional<double> level, double reference_energy,
-                           const Eigen::VectorXd& reference) {
+                           std::optional<double> level, double reference_energy, const Eigen::VectorXd& reference) {
     const bool extreme = is_extreme(objective);
     if (extreme == level.has_value()) {
-        throw std::invalid_argument(std::string("level: expected ") +
-                                    (extreme ? "none" : "one") + " for objective " +
+        throw std::invalid_argument(std::string("level: expected ") + (extreme ? "none" : "one") + " for objective " +
                                     std::string(name(objective)));
     }
     const double energy = level.value_or(reference_energy);
@@ -163,8 +158,8 @@ OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Obj
             break;
         case Objective::nearest: {
             if (reference.size() != window) {
-                throw std::invalid_argument("reference: expected size " + std::to_string(window) +
-                                            ", got " + std::to_string(reference.size()));
+                throw std::invalid_argument("reference: expected size " + std::to_string(window) + ", got " +
+                                            std::to_string(reference.size()));
             }
             const Eigen::VectorXd target = reference / result.scale;
             program.constant = unit * target.squaredNorm();

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "nsma/set/objective.hpp"
 #include "numerics/program.hpp"
+#include "nsma/set/objective.hpp"
 #include "nsma/set/reduction.hpp"
 
 namespace nsma {
@@ -28,15 +28,13 @@ struct OrbitProgram {
 /// b_0..b_{2N-1} of the orbit to stay near, in units u/dt (size 2N; `nearest` only).
 /// Source: [1] COND1-3; objectives as documented at Objective. Throws std::invalid_argument on
 /// a missing or misplaced level or reference.
-[[nodiscard]] OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel,
-                                         Objective objective, std::optional<double> level,
-                                         double reference_energy,
+[[nodiscard]] OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Objective objective,
+                                         std::optional<double> level, double reference_energy,
                                          const Eigen::VectorXd& reference = {});
 
 /// Objective of a reduced point in reported units, straight from the wave amplitudes; the
 /// program's own value is checked against it.
-[[nodiscard]] double objective_of_waves(const Kernel& kernel, Objective objective,
-                                        const Eigen::VectorXd& beta,
+[[nodiscard]] double objective_of_waves(const Kernel& kernel, Objective objective, const Eigen::VectorXd& beta,
                                         const Eigen::VectorXd& reference = {});
 
 }  // namespace nsma

@@ -37,8 +37,7 @@ bool admissible_point(const Reduction& reduction, const Eigen::VectorXd& gamma) 
     for (Eigen::Index j = 0; j < gamma.size(); ++j) {
         if (reduction.bounded[static_cast<std::size_t>(j)] != 0 && gamma[j] < -tolerance) return false;
     }
-    return reduction.rows.rows() == 0 ||
-           (reduction.rows.cast<double>() * gamma).maxCoeff() <= tolerance;
+    return reduction.rows.rows() == 0 || (reduction.rows.cast<double>() * gamma).maxCoeff() <= tolerance;
 }
 
 // Both points at which a line meets the level, for a flat of dimension one.
@@ -65,10 +64,15 @@ std::vector<Eigen::VectorXd> line_points(const Reduction& reduction, double leve
 
 class Solve {
 public:
-    Solve(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Bar& bar,
-          const PatternProblem& problem, const OrbitRequest& request)
-        : options_(options), ipopt_(ipopt), bar_(bar), problem_(problem), request_(request),
-          reduction_(problem.set.reduction), goal_{problem, request.objective, request.reference} {}
+    Solve(const OrbitSolverOptions& options, IpoptSolver& ipopt, const Bar& bar, const PatternProblem& problem,
+          const OrbitRequest& request)
+        : options_(options),
+          ipopt_(ipopt),
+          bar_(bar),
+          problem_(problem),
+          request_(request),
+          reduction_(problem.set.reduction),
+          goal_{problem, request.objective, request.reference} {}
 
     OrbitAnswer run() {
         answer_.pattern = problem_.kernel.pattern;
@@ -116,9 +120,8 @@ private:
         const auto& bound = answer_.interval.bound;
         answer_.verdict_proved = bound.has_value() && level > *bound * (1 + options_.level_tolerance);
         answer_.verdict = answer_.verdict_proved ? Verdict::above : Verdict::undecided;
-        answer_.reason = answer_.verdict_proved
-                             ? "level above the greatest energy of the pattern"
-                             : "level above the greatest energy attained, below the proved bound";
+        answer_.reason = answer_.verdict_proved ? "level above the greatest energy of the pattern"
+                                                : "level above the greatest energy attained, below the proved bound";
         return false;
     }
 
@@ -168,7 +171,8 @@ private:
         } else if (same(answer_.interval.greatest)) {
             std::vector<Candidate> tied;
             for (const auto& vertex : set.vertices) {
-                if (set.energy(vertex) >= *answer_.interval.greatest * (1 - tie_tolerance)) tied.push_back({vertex, "vertex"});
+                if (set.energy(vertex) >= *answer_.interval.greatest * (1 - tie_tolerance))
+                    tied.push_back({vertex, "vertex"});
             }
             take_known(tied);
         } else {
@@ -196,7 +200,8 @@ private:
 
     [[nodiscard]] Eigen::VectorXd simplex_point(double energy) const {
         const bool closed = reduction_.gap_sign == 0;
-        const SimplexLevel level{reduction_.variables(), closed ? 0.0 : problem_.set.least.sum(), energy / reduction_.energy_factor};
+        const SimplexLevel level{reduction_.variables(), closed ? 0.0 : problem_.set.least.sum(),
+                                 energy / reduction_.energy_factor};
         switch (request_.objective) {
             case Objective::least_force: return least_peak_point(level);
             case Objective::nearest: return nearest_point(level, target_of(goal_.reference));
@@ -210,7 +215,8 @@ private:
         Eigen::VectorXd amplitudes = Eigen::VectorXd::Zero(kernel.dimension());
         for (int n = 0; n < window.size(); ++n) {
             const int step = n % kernel.pattern.period_steps();
-            if (const int column = kernel.column(step); column >= 0) amplitudes[column] += kernel.sign[static_cast<std::size_t>(step)] * window[n];
+            if (const int column = kernel.column(step); column >= 0)
+                amplitudes[column] += kernel.sign[static_cast<std::size_t>(step)] * window[n];
         }
         return reduction_.gamma(amplitudes);
     }
@@ -245,7 +251,8 @@ private:
         answer_.solvers = search.runs();
         for (const Best* best : search.ranked()) {
             if (!take(*best)) continue;
-            if (search.unsolved(best) && !search.a_solver_came_to(*best)) no_solver_came("the " + best->candidate.method);
+            if (search.unsolved(best) && !search.a_solver_came_to(*best))
+                no_solver_came("the " + best->candidate.method);
             return;
         }
         // Both failed: the segment still gives an orbit of this pattern at this level.
@@ -348,21 +355,18 @@ OrbitSolver::~OrbitSolver() = default;
 OrbitSolver::OrbitSolver(OrbitSolver&&) noexcept = default;
 OrbitSolver& OrbitSolver::operator=(OrbitSolver&&) noexcept = default;
 
-OrbitAnswer OrbitSolver::solve(const Bar& bar, const PatternProblem& problem,
-                               const OrbitRequest& request) {
+OrbitAnswer OrbitSolver::solve(const Bar& bar, const PatternProblem& problem, const OrbitRequest& request) {
     validate(bar);
     if (bar.gap_sign() != problem.set.reduction.gap_sign) {
-        throw std::invalid_argument("gap sign: expected " +
-                                    std::to_string(problem.set.reduction.gap_sign) + ", got " +
+        throw std::invalid_argument("gap sign: expected " + std::to_string(problem.set.reduction.gap_sign) + ", got " +
                                     std::to_string(bar.gap_sign()));
     }
     if (request.level && !(std::isfinite(*request.level) && *request.level > 0)) {
-        throw std::invalid_argument("level: expected a finite number > 0, got " +
-                                    std::to_string(*request.level));
+        throw std::invalid_argument("level: expected a finite number > 0, got " + std::to_string(*request.level));
     }
     if (request.level && is_extreme(request.objective)) {
-        throw std::invalid_argument("level: expected none for objective " + std::string(name(request.objective)) + ", got " +
-                                    std::to_string(*request.level));
+        throw std::invalid_argument("level: expected none for objective " + std::string(name(request.objective)) +
+                                    ", got " + std::to_string(*request.level));
     }
     const Eigen::Index window = 2 * static_cast<Eigen::Index>(problem.kernel.pattern.cells);
     if (request.reference.size() > 0 && request.reference.size() != window) {
@@ -384,8 +388,6 @@ bool OrbitSolver::outside(const EnergyInterval& interval, double level) const {
     return below(interval, level, options_) || above(interval, level, options_);
 }
 
-Eigen::VectorXd reference_window(const Orbit& orbit) {
-    return wave_basis(orbit.kernel) * orbit.beta;
-}
+Eigen::VectorXd reference_window(const Orbit& orbit) { return wave_basis(orbit.kernel) * orbit.beta; }
 
 }  // namespace nsma

@@ -9,11 +9,11 @@ namespace nsma {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Unknowns beyond which SLSQP, whose steps cost their cube, is left to the augmented Lagrangian with L-BFGS, and a quarter
-// of the starts is made, each of which costs as much as all of a small program.
+// Unknowns beyond which SLSQP, whose steps cost their cube, is left to the augmented Lagrangian with L-BFGS, and a
+// quarter of the starts is made, each of which costs as much as all of a small program.
 constexpr Eigen::Index slsqp_limit = 64;
-// Objectives are compared relative to the greater one, at least to this share of the level: that of an orbit found again is
-// zero but for rounding.
+// Objectives are compared relative to the greater one, at least to this share of the level: that of an orbit found
+// again is zero but for rounding.
 constexpr double objective_floor = 1e-6;
 constexpr double bound_rounding = 1e-9;  // relative; a thousandth of what `global` allows
 constexpr int most_pieces = 64;
@@ -38,10 +38,18 @@ double Goal::rank(const Eigen::VectorXd& gamma) const {
 }
 
 Search::Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const PatternProblem& problem,
-               const OrbitRequest& request, const Goal& goal, double least_energy, const std::optional<Candidate>& known)
-    : options_(options), ipopt_solver_(ipopt), problem_(problem), goal_(goal), floor_(objective_floor * request.level.value_or(least_energy)),
-      program_(orbit_program(problem.set.reduction, problem.kernel, goal.objective, request.level, least_energy, goal.reference)),
-      with_ipopt_(options.solvers != SolverChoice::nlopt), with_nlopt_(options.solvers != SolverChoice::ipopt), starts_(options.starts) {
+               const OrbitRequest& request, const Goal& goal, double least_energy,
+               const std::optional<Candidate>& known)
+    : options_(options),
+      ipopt_solver_(ipopt),
+      problem_(problem),
+      goal_(goal),
+      floor_(objective_floor * request.level.value_or(least_energy)),
+      program_(orbit_program(problem.set.reduction, problem.kernel, goal.objective, request.level, least_energy,
+                             goal.reference)),
+      with_ipopt_(options.solvers != SolverChoice::nlopt),
+      with_nlopt_(options.solvers != SolverChoice::ipopt),
+      starts_(options.starts) {
     if (request.level) level_.emplace(problem.set, *request.level);
     if (level_ && request.start.size() > 0) warm_ = level_->reach(problem.set.reduction.gamma(request.start));
     if (program_.program.variables() > slsqp_limit) starts_ = (starts_ + 3) / 4;
@@ -151,7 +159,8 @@ void Search::settle() {
     }
     if (value == -infinity) return;
     for (Best* one : {&ipopt_, &nlopt_, &unaided_}) {
-        if (one->usable && !one->known) set_bound(program_.program.objective(program_.point(one->candidate.gamma)), value, one->optimality);
+        if (one->usable && !one->known)
+            set_bound(program_.program.objective(program_.point(one->candidate.gamma)), value, one->optimality);
     }
 }
 
@@ -161,12 +170,14 @@ SolverOutcome Search::call(const std::string& solver, const Program& program, co
     return ipopt_solver_.solve(program, x);
 }
 
-// One start of one solver, restored, polished and ranked; false when it is not usable. `posed`: a part of the program. "nlopt" stands for SLSQP, then the
-// augmented Lagrangian.
-bool Search::attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best, const Program* posed) {
+// One start of one solver, restored, polished and ranked; false when it is not usable. `posed`: a part of the program.
+// "nlopt" stands for SLSQP, then the augmented Lagrangian.
+bool Search::attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best,
+                     const Program* posed) {
     if (solver == "nlopt") {
         const bool small = program_.program.variables() <= slsqp_limit;
-        return (small && attempt(start, "nlopt-slsqp", number, best, posed)) || attempt(start, "nlopt-auglag", number, best, posed);
+        return (small && attempt(start, "nlopt-slsqp", number, best, posed)) ||
+               attempt(start, "nlopt-auglag", number, best, posed);
     }
     const SolverOutcome outcome = call(solver, posed != nullptr ? *posed : program_.program, program_.point(start));
     SolverRun run;
@@ -250,7 +261,9 @@ bool Search::not_worse(const Best& a, const Best& b) const {
 }
 
 // Nothing better is left to be found.
-bool Search::settled(const Best& best) const { return best.optimality.global || (unaided_.known && not_worse(best, unaided_)); }
+bool Search::settled(const Best& best) const {
+    return best.optimality.global || (unaided_.known && not_worse(best, unaided_));
+}
 
 bool Search::a_solver_came_to(const Best& best) const { return not_worse(ipopt_, best) || not_worse(nlopt_, best); }
 

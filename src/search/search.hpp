@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "set/level_points.hpp"
-#include "numerics/solver.hpp"
 #include "orbit_program.hpp"
-#include "nsma/search/orbit_solver.hpp"
 #include "numerics/polish.hpp"
+#include "numerics/solver.hpp"
+#include "set/level_points.hpp"
+#include "nsma/search/orbit_solver.hpp"
 
 namespace nsma {
 
@@ -44,8 +44,8 @@ struct Best {
 class Search {
 public:
     /// `known`: the best orbit in closed form, where there is one; solvers are asked whether they agree.
-    Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const PatternProblem& problem, const OrbitRequest& request,
-           const Goal& goal, double least_energy, const std::optional<Candidate>& known);
+    Search(const OrbitSolverOptions& options, IpoptSolver& ipopt, const PatternProblem& problem,
+           const OrbitRequest& request, const Goal& goal, double least_energy, const std::optional<Candidate>& known);
 
     /// The search of SolverChoice::proof until an answer is proved to be the best; absent where none is.
     [[nodiscard]] std::optional<Best> first_proof();
@@ -53,9 +53,10 @@ public:
     void run();
 
     [[nodiscard]] Agreement agreement() const;
-    [[nodiscard]] std::optional<double> difference() const;  ///< of the solvers, relative; absent unless both are usable
-    [[nodiscard]] std::vector<SolverRun> runs() const;       ///< the best of each solver first
-    [[nodiscard]] std::vector<const Best*> ranked() const;   ///< the usable ones, the best first
+    [[nodiscard]] std::optional<double> difference()
+        const;                                              ///< of the solvers, relative; absent unless both are usable
+    [[nodiscard]] std::vector<SolverRun> runs() const;      ///< the best of each solver first
+    [[nodiscard]] std::vector<const Best*> ranked() const;  ///< the usable ones, the best first
     /// A solver asked for came to the objective of `best`.
     [[nodiscard]] bool a_solver_came_to(const Best& best) const;
     /// Not the answer of a solver.
@@ -72,7 +73,8 @@ private:
     void ask(const Best& better, Best& worse, const char* solver);
     void settle();
     [[nodiscard]] bool settled(const Best& best) const;
-    bool attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best, const Program* posed = nullptr);
+    bool attempt(const Eigen::VectorXd& start, const std::string& solver, int number, Best& best,
+                 const Program* posed = nullptr);
     [[nodiscard]] SolverOutcome call(const std::string& solver, const Program& program, const Eigen::VectorXd& x);
     [[nodiscard]] Best found(const Polished& polished, const char* method) const;
     void set_bound(double objective, double bound, Optimality& result) const;

@@ -30,8 +30,8 @@ double root(Function function, double lo, double hi) {
     return std::abs(function(left)) < std::abs(function(right)) ? left : right;
 }
 
-// Humps on k variables in a row, of sum 1, symmetric about their middle: v_j = C(phi_j) - C(h) - closure (C(phi_j) - C(h - 1))
-// with phi_j = j - h, h = (k + 1)/2, and C = cos(theta .) for curvature = theta^2 > 0, cosh for -theta^2.
+// Humps on k variables in a row, of sum 1, symmetric about their middle: v_j = C(phi_j) - C(h) - closure (C(phi_j) -
+// C(h - 1)) with phi_j = j - h, h = (k + 1)/2, and C = cos(theta .) for curvature = theta^2 > 0, cosh for -theta^2.
 class Hump {
 public:
     Hump(Index size, double closure) : size_(size), half_(0.5 * static_cast<double>(size + 1)), closure_(closure) {}
@@ -62,12 +62,14 @@ public:
     [[nodiscard]] double greatest_theta() const {
         const double n = static_cast<double>(size_);
         if (closure_ == 0) return 2 * pi / (n + 1);
-        return root([&](double t) { return std::sin(t * half_) + closure_ * std::sin(t * (half_ - 1)); }, pi / n, 2 * pi / n);
+        return root([&](double t) { return std::sin(t * half_) + closure_ * std::sin(t * (half_ - 1)); }, pi / n,
+                    2 * pi / n);
     }
 
     // theta of the least eigenvector cos(theta phi_j), which a cone's best point follows.
     [[nodiscard]] double least_theta() const {
-        return root([&](double t) { return std::cos(t * half_) - closure_ * std::cos(t * (half_ - 1)); }, 0.0, pi / static_cast<double>(size_));
+        return root([&](double t) { return std::cos(t * half_) - closure_ * std::cos(t * (half_ - 1)); }, 0.0,
+                    pi / static_cast<double>(size_));
     }
     [[nodiscard]] VectorXd least_eigenvector() const {
         const double theta = least_theta();
@@ -151,7 +153,8 @@ VectorXd in_the_middle(const VectorXd& part, Index size) {
 VectorXd nearest_in_cone(const SimplexLevel& level, const VectorXd& target) {
     Index greatest = 0;
     target.maxCoeff(&greatest);
-    const VectorXd toward = target[greatest] > 0 ? VectorXd(target.cwiseMax(0.0)) : VectorXd(VectorXd::Unit(level.size, greatest));
+    const VectorXd toward =
+        target[greatest] > 0 ? VectorXd(target.cwiseMax(0.0)) : VectorXd(VectorXd::Unit(level.size, greatest));
     return std::sqrt(level.square) * toward.normalized();
 }
 
@@ -208,7 +211,8 @@ VectorXd least_peak_point(const SimplexLevel& level) {
 double shock_closure(const Kernel& kernel, const Reduction& reduction) {
     if (reduction.variables() != kernel.classes) return 0;
     const int period = kernel.pattern.period_steps();
-    int sum = 0;  // over the rounds, of the product of the last wave of one and the first of the next; all classes flip alike
+    int sum =
+        0;  // over the rounds, of the product of the last wave of one and the first of the next; all classes flip alike
     for (int n = kernel.classes - 1; n < period; n += kernel.classes) {
         sum += kernel.sign[static_cast<std::size_t>(n)] * kernel.sign[static_cast<std::size_t>((n + 1) % period)];
     }

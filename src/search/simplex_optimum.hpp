@@ -6,8 +6,8 @@
 
 namespace nsma {
 
-/// An energy level of a set that is a simplex: gamma >= 0, sum of gamma = `sum`, |gamma|^2 = `square`. For a closed gap it
-/// is a cone, without the sum. Why the points below are the best of all: data/optima.md.
+/// An energy level of a set that is a simplex: gamma >= 0, sum of gamma = `sum`, |gamma|^2 = `square`. For a closed gap
+/// it is a cone, without the sum. Why the points below are the best of all: data/optima.md.
 struct SimplexLevel {
     Eigen::Index size = 1;  ///< n >= 1, number of reduced variables
     double sum = 1;         ///< > 0; 0: a cone

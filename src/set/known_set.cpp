@@ -33,7 +33,8 @@ std::vector<Eigen::VectorXd> chain_vertices(Eigen::Index n) {
     std::vector<char> high(inner);
     // Alternating steps; where n is even one step is zero, and the sums after it are the other way round.
     for (std::size_t zero = 0; zero < (n % 2 == 0 ? static_cast<std::size_t>(n) : 1U); ++zero) {
-        for (std::size_t k = 0; k < inner; ++k) high[k] = static_cast<char>((k + (n % 2 == 0 && k >= zero ? 1U : 0U)) % 2 == 0);
+        for (std::size_t k = 0; k < inner; ++k)
+            high[k] = static_cast<char>((k + (n % 2 == 0 && k >= zero ? 1U : 0U)) % 2 == 0);
         keep(high);
     }
     const auto greatest = steps.size();

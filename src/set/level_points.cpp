@@ -24,9 +24,8 @@ LevelPoints::LevelPoints(const AdmissibleSet& set, double level) : set_(set), le
     if (set.status != AdmissibleSet::Status::nonempty || set.vertices.empty() || !(level > 0)) {
         throw std::invalid_argument("set, level: expected a nonempty set with vertices and a level > 0");
     }
-    base_ = set.reduction.gap_sign == 0
-                ? Eigen::VectorXd(Eigen::VectorXd::Zero(set.vertices.front().size()))
-                : set.least;
+    base_ =
+        set.reduction.gap_sign == 0 ? Eigen::VectorXd(Eigen::VectorXd::Zero(set.vertices.front().size())) : set.least;
     centre_ = base_;
     for (const auto& vertex : set.vertices) centre_ += vertex;
     // A closed gap has a cone: any positive multiple is as good.
@@ -36,7 +35,8 @@ LevelPoints::LevelPoints(const AdmissibleSet& set, double level) : set_(set), le
 std::optional<Eigen::VectorXd> LevelPoints::reach(const Eigen::VectorXd& gamma) const {
     const double square = level_ / set_.reduction.energy_factor;
     const double here = gamma.squaredNorm();
-    if (set_.reduction.gap_sign == 0) return std::sqrt(square) * (here > 0 ? Eigen::VectorXd(gamma.normalized()) : set_.ray);
+    if (set_.reduction.gap_sign == 0)
+        return std::sqrt(square) * (here > 0 ? Eigen::VectorXd(gamma.normalized()) : set_.ray);
     if (here > square) {
         // Backward from the base, which lies below the level.
         const Eigen::VectorXd direction = gamma - base_;
@@ -70,7 +70,8 @@ Eigen::VectorXd LevelPoints::mixture(int seed) const {
 
 int LevelPoints::pieces() const {
     if (set_.reduction.gap_sign == 0) return static_cast<int>(set_.vertices.size());
-    return static_cast<int>(std::count_if(set_.vertices.begin(), set_.vertices.end(), [this](const auto& vertex) { return set_.energy(vertex) > level_; }));
+    return static_cast<int>(std::count_if(set_.vertices.begin(), set_.vertices.end(),
+                                          [this](const auto& vertex) { return set_.energy(vertex) > level_; }));
 }
 
 std::optional<Eigen::VectorXd> LevelPoints::start(int k) const {

@@ -34,7 +34,7 @@ private:
 
     const AdmissibleSet& set_;
     double level_;
-    Eigen::VectorXd base_;    // the least-energy point; the rest state for a closed gap
+    Eigen::VectorXd base_;  // the least-energy point; the rest state for a closed gap
     Eigen::VectorXd centre_;
 };
 

@@ -10,7 +10,7 @@ constexpr long dominance_work_limit = 20'000'000;  // entries compared; beyond i
 
 // Live columns with their COND3 sign folded in, as presolve shrinks them.
 struct Columns {
-    std::vector<std::int8_t> flip;       // 0 once the column is known to be zero
+    std::vector<std::int8_t> flip;  // 0 once the column is known to be zero
     std::vector<std::uint8_t> bounded;
 };
 
@@ -33,8 +33,7 @@ Columns fold_signs(const Conditions& conditions, RemovalCounts& removed) {
 
 // Walks the free flight once and fixes the columns of every row that has only nonnegative terms;
 // counters of the positive and the other terms decide each row in O(1).
-bool force_zeros(const Kernel& kernel, Columns& columns, std::vector<int>& sum,
-                 std::vector<ForcedZero>& forced) {
+bool force_zeros(const Kernel& kernel, Columns& columns, std::vector<int>& sum, std::vector<ForcedZero>& forced) {
     std::fill(sum.begin(), sum.end(), 0);
     int positive = 0;
     int other = 0;  // negative terms of bounded columns and any term of a free column
@@ -78,8 +77,7 @@ class RowCollector {
 public:
     RowCollector(const Kernel& kernel, const Columns& columns, const std::vector<int>& reduced,
                  const std::vector<std::uint8_t>& bounded)
-        : kernel_(kernel), columns_(columns), reduced_(reduced), bounded_(bounded),
-          sum_(bounded.size(), 0) {}
+        : kernel_(kernel), columns_(columns), reduced_(reduced), bounded_(bounded), sum_(bounded.size(), 0) {}
 
     void collect(RemovalCounts& removed) {
         const int r = kernel_.pattern.free_steps;
@@ -127,8 +125,7 @@ private:
 
     void apply(int n) {
         const auto c = static_cast<std::size_t>(kernel_.column(n));
-        sum_[static_cast<std::size_t>(reduced_[c])] +=
-            columns_.flip[c] * kernel_.sign[static_cast<std::size_t>(n)];
+        sum_[static_cast<std::size_t>(reduced_[c])] += columns_.flip[c] * kernel_.sign[static_cast<std::size_t>(n)];
     }
 
     void keep(int step, RemovalCounts& removed) {
@@ -161,8 +158,7 @@ private:
 };
 
 // Row a is implied by row b when b - a >= 0 on bounded columns and = 0 on free ones.
-bool dominates(const std::vector<int>& b, const std::vector<int>& a,
-               const std::vector<std::uint8_t>& bounded) {
+bool dominates(const std::vector<int>& b, const std::vector<int>& a, const std::vector<std::uint8_t>& bounded) {
     for (std::size_t j = 0; j < a.size(); ++j) {
         if (b[j] < a[j] || (bounded[j] == 0 && b[j] != a[j])) return false;
     }
@@ -170,13 +166,11 @@ bool dominates(const std::vector<int>& b, const std::vector<int>& a,
 }
 
 std::vector<std::size_t> undominated(const std::vector<std::vector<int>>& rows,
-                                     const std::vector<std::uint8_t>& bounded,
-                                     RemovalCounts& removed) {
+                                     const std::vector<std::uint8_t>& bounded, RemovalCounts& removed) {
     std::vector<std::size_t> kept;
     const auto count = rows.size();
     const bool affordable =
-        static_cast<long>(count) * static_cast<long>(count) * static_cast<long>(bounded.size()) <=
-        dominance_work_limit;
+        static_cast<long>(count) * static_cast<long>(count) * static_cast<long>(bounded.size()) <= dominance_work_limit;
     for (std::size_t a = 0; a < count; ++a) {
         bool implied = false;
         // Kept rows are distinct, so two rows never dominate each other.
@@ -268,8 +262,7 @@ Reduction reduce(const Conditions& conditions) {
     reduction.rows.resize(static_cast<Eigen::Index>(kept.size()), n);
     for (std::size_t i = 0; i < kept.size(); ++i) {
         for (Eigen::Index j = 0; j < n; ++j) {
-            reduction.rows(static_cast<Eigen::Index>(i), j) =
-                collector.rows[kept[i]][static_cast<std::size_t>(j)];
+            reduction.rows(static_cast<Eigen::Index>(i), j) = collector.rows[kept[i]][static_cast<std::size_t>(j)];
         }
         reduction.row_step.push_back(collector.steps[kept[i]]);
     }

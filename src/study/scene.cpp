@@ -14,12 +14,8 @@ namespace {
 // in binary, so a bound missed by rounding only is met.
 constexpr double bound_rounding = 1e-9;
 
-int first_step(double ratio, int cells) {
-    return static_cast<int>(std::ceil(ratio * cells - bound_rounding));
-}
-int last_step(double ratio, int cells) {
-    return static_cast<int>(std::floor(ratio * cells + bound_rounding));
-}
+int first_step(double ratio, int cells) { return static_cast<int>(std::ceil(ratio * cells - bound_rounding)); }
+int last_step(double ratio, int cells) { return static_cast<int>(std::floor(ratio * cells + bound_rounding)); }
 
 struct Visit {
     const Scene& scene;
@@ -38,7 +34,8 @@ struct Visit {
         range.period_hi = last_step(selection.period[1], cells);
         if (selection.contact) {
             range.contact_lo = std::max(1, first_step((*selection.contact)[0], cells));
-            range.contact_hi = std::min(range.period_hi, last_step(std::min((*selection.contact)[1], selection.period[1]), cells));
+            range.contact_hi =
+                std::min(range.period_hi, last_step(std::min((*selection.contact)[1], selection.period[1]), cells));
         }
         return patterns_in(cells, range);
     }
@@ -53,8 +50,6 @@ struct Visit {
 
 }  // namespace
 
-std::vector<Pattern> patterns_of(const Scene& scene) {
-    return std::visit(Visit{scene}, scene.patterns);
-}
+std::vector<Pattern> patterns_of(const Scene& scene) { return std::visit(Visit{scene}, scene.patterns); }
 
 }  // namespace nsma

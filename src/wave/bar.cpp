@@ -22,17 +22,14 @@ double Bar::displacement_unit() const {
     return std::sqrt(2.0 * length / (young_modulus * area));  // Y S u^2 / (2 L) = 1 J
 }
 
-double Bar::energy_unit() const {
-    return gap != 0.0 ? 0.5 * young_modulus * area * gap * gap / length : 1.0;
-}
+double Bar::energy_unit() const { return gap != 0.0 ? 0.5 * young_modulus * area * gap * gap / length : 1.0; }
 
 double Bar::force_unit() const { return young_modulus * area * displacement_unit() / length; }
 
 void validate(const Bar& bar) {
     const auto require_positive = [](const char* name, double value) {
         if (!std::isfinite(value) || value <= 0.0) {
-            throw std::invalid_argument(
-                fmt::format("{}: expected a finite value > 0, got {}", name, value));
+            throw std::invalid_argument(fmt::format("{}: expected a finite value > 0, got {}", name, value));
         }
     };
     require_positive("length", bar.length);

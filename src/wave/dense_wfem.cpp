@@ -43,10 +43,8 @@ MatrixXd step_matrix(const Bar& bar, const Mesh& mesh, bool contact) {
     }
 
     MatrixXd step = MatrixXd::Identity(mesh.window(), mesh.window());
-    step.topRows(cells) +=
-        z * (interface_velocity.bottomRows(cells) - interface_velocity.topRows(cells));
-    step.bottomRows(cells) +=
-        (interface_stress.bottomRows(cells) - interface_stress.topRows(cells)) / z;
+    step.topRows(cells) += z * (interface_velocity.bottomRows(cells) - interface_velocity.topRows(cells));
+    step.bottomRows(cells) += (interface_stress.bottomRows(cells) - interface_stress.topRows(cells)) / z;
     return step;
 }
 
@@ -67,23 +65,16 @@ MatrixXd power(MatrixXd base, int exponent) {
 
 }  // namespace
 
-Eigen::MatrixXd free_step_matrix(const Bar& bar, const Mesh& mesh) {
-    return step_matrix(bar, mesh, false);
-}
+Eigen::MatrixXd free_step_matrix(const Bar& bar, const Mesh& mesh) { return step_matrix(bar, mesh, false); }
 
-Eigen::MatrixXd contact_step_matrix(const Bar& bar, const Mesh& mesh) {
-    return step_matrix(bar, mesh, true);
-}
+Eigen::MatrixXd contact_step_matrix(const Bar& bar, const Mesh& mesh) { return step_matrix(bar, mesh, true); }
 
-Eigen::MatrixXd periodicity_matrix(const Bar& bar, const Mesh& mesh, int free_steps,
-                                   int contact_steps) {
+Eigen::MatrixXd periodicity_matrix(const Bar& bar, const Mesh& mesh, int free_steps, int contact_steps) {
     if (free_steps < 1) {
-        throw std::invalid_argument(
-            fmt::format("free_steps: expected at least 1, got {}", free_steps));
+        throw std::invalid_argument(fmt::format("free_steps: expected at least 1, got {}", free_steps));
     }
     if (contact_steps < 1) {
-        throw std::invalid_argument(
-            fmt::format("contact_steps: expected at least 1, got {}", contact_steps));
+        throw std::invalid_argument(fmt::format("contact_steps: expected at least 1, got {}", contact_steps));
     }
     const MatrixXd flight = power(free_step_matrix(bar, mesh), free_steps);
     const MatrixXd contact = power(contact_step_matrix(bar, mesh), contact_steps);
@@ -103,10 +94,8 @@ void cell_step(const Bar& bar, const Mesh& mesh, bool contact, State& state) {
         double right_stress = 0.0;
         double right_velocity = 0.0;
         if (i + 1 < cells) {
-            right_stress =
-                0.5 * (stress[i] + stress[i + 1]) + 0.5 * z * (velocity[i + 1] - velocity[i]);
-            right_velocity =
-                0.5 * (velocity[i] + velocity[i + 1]) + 0.5 * (stress[i + 1] - stress[i]) / z;
+            right_stress = 0.5 * (stress[i] + stress[i + 1]) + 0.5 * z * (velocity[i + 1] - velocity[i]);
+            right_velocity = 0.5 * (velocity[i] + velocity[i + 1]) + 0.5 * (stress[i + 1] - stress[i]) / z;
         } else if (contact) {
             right_stress = stress[i] - z * velocity[i];
         } else {

@@ -16,8 +16,7 @@ namespace nsma::dense {
 [[nodiscard]] Eigen::MatrixXd contact_step_matrix(const Bar& bar, const Mesh& mesh);
 
 /// S_T = A_c^p A_f^r - I. Source: [1] Eq. (4). Throws std::invalid_argument unless r, p >= 1.
-[[nodiscard]] Eigen::MatrixXd periodicity_matrix(const Bar& bar, const Mesh& mesh, int free_steps,
-                                                 int contact_steps);
+[[nodiscard]] Eigen::MatrixXd periodicity_matrix(const Bar& bar, const Mesh& mesh, int free_steps, int contact_steps);
 
 /// One step in place, cell by cell from the interface values, O(N). `contact` chooses the
 /// condition at the contact end. Source: [2], the scheme behind [1] Eq. (1).

@@ -20,8 +20,7 @@ void require(const char* name, int value) {
 
 void require(const char* name, double tolerance) {
     if (!std::isfinite(tolerance) || tolerance < 0.0) {
-        throw std::invalid_argument(
-            fmt::format("{}: expected a finite value >= 0, got {}", name, tolerance));
+        throw std::invalid_argument(fmt::format("{}: expected a finite value >= 0, got {}", name, tolerance));
     }
 }
 
@@ -48,8 +47,8 @@ int phases(const std::vector<MarchedStep>& steps) {
 
 }  // namespace
 
-MarchReport march(const Bar& bar, const Mesh& mesh, const State& initial_state, int period_steps,
-                  int periods, const MarchOptions& options) {
+MarchReport march(const Bar& bar, const Mesh& mesh, const State& initial_state, int period_steps, int periods,
+                  const MarchOptions& options) {
     require("period_steps", period_steps);
     require("periods", periods);
     require("touch_tolerance", options.touch_tolerance);
@@ -120,8 +119,8 @@ MarchReport march(const Bar& bar, const Mesh& mesh, const State& initial_state, 
                 std::max(report.periodicity_defect, distance(queue, initial_waves) / initial_norm);
         }
         if (initial_energy > 0.0) {
-            report.energy_drift = std::max(
-                report.energy_drift, std::abs(queue.energy() - initial_energy) / initial_energy);
+            report.energy_drift =
+                std::max(report.energy_drift, std::abs(queue.energy() - initial_energy) / initial_energy);
         }
     }
     report.contact_phases = phases(report.first_period);

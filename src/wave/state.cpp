@@ -12,8 +12,7 @@ namespace {
 void require_size(const Mesh& mesh, const State& state) {
     validate(mesh);
     if (state.size() != mesh.window()) {
-        throw std::invalid_argument(
-            fmt::format("state: expected size {}, got {}", mesh.window(), state.size()));
+        throw std::invalid_argument(fmt::format("state: expected size {}, got {}", mesh.window(), state.size()));
     }
 }
 
@@ -35,8 +34,7 @@ void validate(const Mesh& mesh, const State& state) {
     require_size(mesh, state);
     for (Eigen::Index i = 0; i < state.size(); ++i) {
         if (!std::isfinite(state[i])) {
-            throw std::invalid_argument(
-                fmt::format("state: expected finite values, got {} at entry {}", state[i], i));
+            throw std::invalid_argument(fmt::format("state: expected finite values, got {} at entry {}", state[i], i));
         }
     }
 }

@@ -29,8 +29,8 @@ public:
     void step_free();
     void step_contact();
 
-    [[nodiscard]] State state() const;      ///< Q at the present step, size 2N
-    [[nodiscard]] double energy() const;    ///< [J], rho S dx times the sum of b^2
+    [[nodiscard]] State state() const;    ///< Q at the present step, size 2N
+    [[nodiscard]] double energy() const;  ///< [J], rho S dx times the sum of b^2
     [[nodiscard]] int window() const { return static_cast<int>(waves_.size()); }
     /// b_{n+k} of the present step n, k = 0..2N-1, [m/s].
     [[nodiscard]] double wave(int k) const;

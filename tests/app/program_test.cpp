@@ -60,8 +60,8 @@ protected:
     static std::string scene_text(const std::string& gap = "1.0", const std::string& cells = "6",
                                   const std::string& patterns = "list = [[16, 4], [23, 1]]",
                                   const std::string& levels = "[1.6, 12.0]") {
-        return "title = \"Test\"\n[bar]\nlength = 1.0\nyoung_modulus = 1.0\ndensity = 1.0\narea = 1.0\ngap = " +
-               gap + "\n[mesh]\ncells = " + cells + "\n[patterns]\n" + patterns + "\n[levels]\nlist = " + levels +
+        return "title = \"Test\"\n[bar]\nlength = 1.0\nyoung_modulus = 1.0\ndensity = 1.0\narea = 1.0\ngap = " + gap +
+               "\n[mesh]\ncells = " + cells + "\n[patterns]\n" + patterns + "\n[levels]\nlist = " + levels +
                "\n[program]\nobjective = \"least-shock\"\n";
     }
 
@@ -93,7 +93,8 @@ protected:
     Result finish(pid_t child) {
         int status = 0;
         waitpid(child, &status, 0);
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), contents(folder_ / ".out"), contents(folder_ / ".err")};
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), contents(folder_ / ".out"),
+                contents(folder_ / ".err")};
     }
 
     Result run(const std::vector<std::string>& words) { return finish(start(words)); }
@@ -135,9 +136,10 @@ json parsed(const Result& result) {
 /// The fields that `orbit --json` promises, with the right types, null where there is no value.
 void expect_fields(const json& orbit) {
     const std::vector<std::string> promised{
-        "cells", "gap", "free_steps", "contact_steps", "kernel_dimension", "frequency_ratio", "period_s",
-        "verdict", "energy_ratio", "energy_ratio_min", "energy_ratio_max", "energy_joule", "objective",
-        "alpha", "violations", "solvers", "agreement", "tip_displacement", "contact_force"};
+        "cells",        "gap",     "free_steps",   "contact_steps",    "kernel_dimension", "frequency_ratio",
+        "period_s",     "verdict", "energy_ratio", "energy_ratio_min", "energy_ratio_max", "energy_joule",
+        "objective",    "alpha",   "violations",   "solvers",          "agreement",        "tip_displacement",
+        "contact_force"};
     for (const auto& name : promised) EXPECT_TRUE(orbit.contains(name)) << name;
     for (const char* name : {"cells", "free_steps", "contact_steps", "kernel_dimension"}) {
         EXPECT_TRUE(orbit[name].is_number_integer()) << name;
@@ -164,7 +166,8 @@ void expect_fields(const json& orbit) {
 }
 
 TEST_F(Program, OrbitJsonOfAnAdmissibleLevel) {
-    const Result result = run({"orbit", scene_, "--free", "16", "--contact", "4", "--energy", "12", "--solver", "both", "--json"});
+    const Result result =
+        run({"orbit", scene_, "--free", "16", "--contact", "4", "--energy", "12", "--solver", "both", "--json"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err, "");
     const json orbit = parsed(result);
@@ -177,7 +180,7 @@ TEST_F(Program, OrbitJsonOfAnAdmissibleLevel) {
     EXPECT_NEAR(orbit["energy_ratio"].get<double>(), 12, 1e-11);              // the level to 1e-12
     EXPECT_NEAR(orbit["energy_ratio_min"].get<double>(), 9, 1e-11);
     EXPECT_NEAR(orbit["energy_ratio_max"].get<double>(), 36, 1e-10);
-    EXPECT_NEAR(orbit["energy_joule"].get<double>(), 6, 1e-11);               // E_g = 1/2 J
+    EXPECT_NEAR(orbit["energy_joule"].get<double>(), 6, 1e-11);  // E_g = 1/2 J
     EXPECT_EQ(orbit["alpha"].size(), 4U);
     EXPECT_EQ(orbit["tip_displacement"].size(), 21U);
     EXPECT_EQ(orbit["contact_force"].size(), 20U);
@@ -251,12 +254,14 @@ TEST_F(Program, OrbitTextAndSolverChoices) {
 }
 
 TEST_F(Program, ClosedGapSpeaksJoules) {
-    const Result result = run({"orbit", scene_, "--gap", "0", "--cells", "8", "--free", "16", "--contact", "8", "--energy", "2", "--json"});
+    const Result result = run(
+        {"orbit", scene_, "--gap", "0", "--cells", "8", "--free", "16", "--contact", "8", "--energy", "2", "--json"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const json orbit = parsed(result);
     expect_fields(orbit);
     EXPECT_NEAR(orbit["energy_joule"].get<double>(), 2, 2e-12);
-    for (const char* name : {"energy_ratio", "energy_ratio_min", "energy_ratio_max"}) EXPECT_TRUE(orbit[name].is_null());
+    for (const char* name : {"energy_ratio", "energy_ratio_min", "energy_ratio_max"})
+        EXPECT_TRUE(orbit[name].is_null());
     expect_refused({"orbit", scene_, "--gap", "0", "--cells", "8", "--free", "16", "--contact", "8"}, "--energy");
 }
 
@@ -266,8 +271,9 @@ TEST_F(Program, ScanCsvAndPublicCounts) {
     EXPECT_EQ(result.err, "");
     const auto lines = lines_of(result.out);
     ASSERT_EQ(lines.size(), 1U + 209U);
-    EXPECT_EQ(lines[0], "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,"
-                        "verdict,energy_ratio_min,energy_ratio_max,kind");
+    EXPECT_EQ(lines[0],
+              "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,"
+              "verdict,energy_ratio_min,energy_ratio_max,kind");
     int admissible = 0;
     int inadmissible = 0;
     int contact = 0;
@@ -361,7 +367,8 @@ TEST_F(Program, BadFlagsAreOneLine) {
     expect_refused(study({"--free", "16", "--contact", "4", "--energy", "nan"}), "--energy");
     expect_refused(study({"--energy", "12"}), "--free");
     expect_refused(study({"--objective", "beauty"}), "--objective");
-    expect_refused(study({"--free", "16", "--contact", "4", "--energy", "12", "--objective", "min-energy"}), "--energy");
+    expect_refused(study({"--free", "16", "--contact", "4", "--energy", "12", "--objective", "min-energy"}),
+                   "--energy");
     expect_refused(study({"--solver", "gurobi"}), "--solver");
     const std::string closed = write("closed.toml", scene_text("0.0"));
     expect_refused({"sensitivity", closed, "--free", "16", "--contact", "4", "--out", out}, "--energy");
@@ -437,8 +444,8 @@ TEST_F(Program, SweepAgainIsTheSameToTheByte) {
     EXPECT_EQ(first.exit_code, 0) << first.err << first.out;
     EXPECT_EQ(first.err, "");
     const std::vector<std::string> stable{"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl"};
-    for (const char* name : {"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl", "timings.csv",
-                             "summary.txt", "summary.json"}) {
+    for (const char* name :
+         {"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl", "timings.csv", "summary.txt", "summary.json"}) {
         EXPECT_TRUE(fs::is_regular_file(out / name)) << name;
         EXPECT_FALSE(fs::exists((out / name).string() + ".part")) << name;
     }
@@ -511,13 +518,15 @@ TEST_F(Program, FreeAndStuckPatternsAreLeftUnlessAskedFor) {
     std::vector<std::string> contact_rows;
     for (const auto& row : rows_of("all")) {
         if (row.find(",contact,") != std::string::npos) contact_rows.push_back(row);
-        EXPECT_TRUE(row.find(",contact,false,") != std::string::npos || row.find(",free,true,") != std::string::npos) << row;
+        EXPECT_TRUE(row.find(",contact,false,") != std::string::npos || row.find(",free,true,") != std::string::npos)
+            << row;
     }
     EXPECT_EQ(contact_rows, rows_of("contact"));
     // One row a motion: the copies, and nothing but them, are left out.
     EXPECT_GT(summary["copies"].get<int>(), 0);
     EXPECT_LT(rows_of("distinct").size(), rows_of("contact").size());
-    for (const auto& row : rows_of("distinct")) EXPECT_NE(contents(folder_ / "contact" / "levels.csv").find(row), std::string::npos);
+    for (const auto& row : rows_of("distinct"))
+        EXPECT_NE(contents(folder_ / "contact" / "levels.csv").find(row), std::string::npos);
     EXPECT_EQ(run({"export", (folder_ / "contact").string(), "--distinct"}).exit_code, 0);
     EXPECT_EQ(contents(folder_ / "contact" / "levels.csv"), contents(folder_ / "distinct" / "levels.csv"));
     // The orbit of least energy has its row, and its level another, though they are one motion.
@@ -526,17 +535,21 @@ TEST_F(Program, FreeAndStuckPatternsAreLeftUnlessAskedFor) {
     EXPECT_EQ(rows_of("twice").size(), 2U);
 
     // The scene may ask as well; another choice is another sweep.
-    const std::string asking = write("asking.toml", scene_text("1.0", "6", "period = [0.0, 4.0]\nkinds = \"all\"", "[1.6, 12.0]"));
+    const std::string asking =
+        write("asking.toml", scene_text("1.0", "6", "period = [0.0, 4.0]\nkinds = \"all\"", "[1.6, 12.0]"));
     EXPECT_EQ(run({"sweep", asking, "--out", (folder_ / "asked").string(), "--quiet"}).exit_code % 4, 0);
     EXPECT_EQ(rows_of("asked"), rows_of("all"));
     expect_refused({"sweep", scene, "--out", (folder_ / "all").string(), "--quiet", "--resume"}, "kinds");
-    const std::string wrong = write("wrong.toml", scene_text("1.0", "6", "period = [0.0, 4.0]\nkinds = \"some\"", "[1.6]"));
+    const std::string wrong =
+        write("wrong.toml", scene_text("1.0", "6", "period = [0.0, 4.0]\nkinds = \"some\"", "[1.6]"));
     expect_refused({"scan", wrong}, "kinds");
     // Only a free pattern: a verdict, no orbit, and a word on how to get it.
     const std::string grazing = write("grazing.toml", scene_text("1.0", "6", "list = [[23, 1]]", "[1.6]"));
     const Result left = run({"sweep", grazing, "--out", (folder_ / "left").string(), "--quiet"});
     EXPECT_EQ(left.exit_code, 3);
-    EXPECT_NE(left.err.find("nsma: no pattern of the scene is a contact motion; --all-kinds solves the other 1\n"), std::string::npos) << left.err;
+    EXPECT_NE(left.err.find("nsma: no pattern of the scene is a contact motion; --all-kinds solves the other 1\n"),
+              std::string::npos)
+        << left.err;
     const Result one = run({"orbit", scene_, "--free", "23", "--contact", "1"});
     EXPECT_EQ(one.out.find("kind          free: "), 0U) << one.out;
 }
@@ -589,8 +602,11 @@ TEST_F(Program, CertificatesAreWrittenAndVerified) {
     const std::string proofs = (folder_ / "proofs.jsonl").string();
     const Result proved = run({"prove", scene_, "--cells", "6", "--period", "0", "4", "--out", proofs, "--quiet"});
     EXPECT_EQ(proved.exit_code, 0) << proved.err;
-    EXPECT_NE(proved.out.find("276 patterns, 276 proved; 35 admissible (18 contact, 17 free, 0 stuck), greatest energy exact for 35\n"),
-              std::string::npos) << proved.out;
+    EXPECT_NE(
+        proved.out.find(
+            "276 patterns, 276 proved; 35 admissible (18 contact, 17 free, 0 stuck), greatest energy exact for 35\n"),
+        std::string::npos)
+        << proved.out;
     EXPECT_FALSE(fs::exists(proofs + ".part"));
     EXPECT_EQ(lines_of(contents(proofs)).size(), 276U);
     const Result checked = run({"check", proofs});
@@ -611,8 +627,10 @@ TEST_F(Program, CertificatesAreWrittenAndVerified) {
     EXPECT_EQ(rejected.exit_code, 4);
     const long line = 1 + std::count(before.begin(), before.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     EXPECT_EQ(rejected.out.rfind(file + ":" + std::to_string(line) + ": (6, ", 0), 0U) << rejected.out;
-    EXPECT_NE(rejected.out.find("rejected: kind: a contact step carries a wave, so free is not proved\n275 certificates valid, 1 rejected\n"),
-              std::string::npos) << rejected.out;
+    EXPECT_NE(rejected.out.find("rejected: kind: a contact step carries a wave, so free is not proved\n275 "
+                                "certificates valid, 1 rejected\n"),
+              std::string::npos)
+        << rejected.out;
     // No certificates, none of this version, no object.
     expect_refused({"check", write("none.jsonl", "")}, "expected certificates");
     expect_refused({"check", write("text.jsonl", "hello\n")}, "text.jsonl:1");
@@ -645,14 +663,18 @@ TEST_F(Program, ScanMethodsAgreeToTheByte) {
     EXPECT_EQ(certified.exit_code, 0);
     EXPECT_EQ(run(integers).out, certified.out);
     const auto lines = lines_of(certified.out);
-    EXPECT_EQ(std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(",contact"); }), 23);
-    EXPECT_EQ(std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(",free"); }), 15);
+    EXPECT_EQ(
+        std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(",contact"); }),
+        23);
+    EXPECT_EQ(
+        std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(",free"); }), 15);
     expect_refused({"scan", scene_, "--method", "magic"}, "--method");
 }
 
 TEST_F(Program, NoNegativeZeros) {
     for (const std::string format : {"--json", ""}) {
-        std::vector<std::string> words{"orbit", scene_, "--cells", "20", "--free", "48", "--contact", "16", "--energy", "60"};
+        std::vector<std::string> words{"orbit", scene_,      "--cells", "20",       "--free",
+                                       "48",    "--contact", "16",      "--energy", "60"};
         if (!format.empty()) words.push_back(format);
         const Result result = run(words);
         EXPECT_EQ(result.out.find(" -0 "), std::string::npos) << result.out;
@@ -664,10 +686,11 @@ TEST_F(Program, NoNegativeZeros) {
 TEST_F(Program, AccuracyStudyRunsQuicklyAndRefusesWhatItCannotStudy) {
     const std::string out = (folder_ / "accuracy").string();
     const std::string closed = write("closed.toml", scene_text("0.0"));
-    for (const auto& words : std::vector<std::vector<std::string>>{{"accuracy", closed, "--out", out},
-                                                                   {"accuracy", scene_},
-                                                                   {"accuracy", scene_, "--out", scene_},
-                                                                   {"accuracy", scene_, "--out", out, "--quick=maybe"}}) {
+    for (const auto& words :
+         std::vector<std::vector<std::string>>{{"accuracy", closed, "--out", out},
+                                               {"accuracy", scene_},
+                                               {"accuracy", scene_, "--out", scene_},
+                                               {"accuracy", scene_, "--out", out, "--quick=maybe"}}) {
         const Result result = run(words);
         EXPECT_EQ(result.exit_code, 2);
         EXPECT_EQ(lines_of(result.err).size(), 1U) << result.err;
@@ -675,7 +698,8 @@ TEST_F(Program, AccuracyStudyRunsQuicklyAndRefusesWhatItCannotStudy) {
     const Result done = run({"accuracy", scene_, "--out", out, "--quick", "--quiet"});
     EXPECT_EQ(done.exit_code, 0) << done.err;
     EXPECT_TRUE(done.err.empty()) << done.err;
-    for (const char* file : {"programs.csv", "stability.csv", "causes.csv", "winners.csv", "machine.txt", "charts/accuracy-programs.png"}) {
+    for (const char* file : {"programs.csv", "stability.csv", "causes.csv", "winners.csv", "machine.txt",
+                             "charts/accuracy-programs.png"}) {
         EXPECT_TRUE(fs::exists(fs::path(out) / file)) << file;
     }
     // Results of one scene only.
@@ -707,8 +731,9 @@ TEST_F(Program, SensitivityStudyOfOnePatternAndOfTheScene) {
     const std::string whole = (folder_ / "whole").string();
     const Result all = run({"sensitivity", scene_, "--out", whole, "--quiet"});
     EXPECT_EQ(all.exit_code, 0) << all.err;
-    for (const char* file : {"optima.csv", "prices.csv", "orbit-derivatives.csv", "intervals.csv", "relaxations.csv",
-                             "ablation.csv", "funnel.csv", "sensitivity.txt", "charts/funnel.png", "charts/counts.svg"}) {
+    for (const char* file :
+         {"optima.csv", "prices.csv", "orbit-derivatives.csv", "intervals.csv", "relaxations.csv", "ablation.csv",
+          "funnel.csv", "sensitivity.txt", "charts/funnel.png", "charts/counts.svg"}) {
         EXPECT_TRUE(fs::exists(fs::path(whole) / file)) << file;
     }
     const std::string before = contents(fs::path(whole) / "prices.csv");
@@ -718,7 +743,10 @@ TEST_F(Program, SensitivityStudyOfOnePatternAndOfTheScene) {
     // Results of one scene only; a pattern that nothing meets has no optimum.
     const std::string other = write("other.toml", scene_text("1.0", "7"));
     EXPECT_EQ(run({"sensitivity", other, "--out", whole, "--quiet"}).exit_code, 2);
-    EXPECT_EQ(run({"sensitivity", scene_, "--free", "5", "--contact", "5", "--out", (folder_ / "none").string(), "--quiet"}).exit_code, 3);
+    EXPECT_EQ(
+        run({"sensitivity", scene_, "--free", "5", "--contact", "5", "--out", (folder_ / "none").string(), "--quiet"})
+            .exit_code,
+        3);
 }
 
 }  // namespace

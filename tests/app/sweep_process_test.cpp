@@ -88,8 +88,8 @@ protected:
     static std::vector<std::string> sweep(const std::string& scene, const fs::path& out, bool resume = false,
                                           const std::string& solver = "proof") {
         // Free patterns too, which take solvers some time.
-        std::vector<std::string> words{NSMA_PROGRAM, "sweep", scene, "--out", out.string(), "--quiet", "--all-kinds",
-                                       "--solver", solver};
+        std::vector<std::string> words{NSMA_PROGRAM, "sweep",       scene,      "--out", out.string(),
+                                       "--quiet",    "--all-kinds", "--solver", solver};
         if (resume) words.emplace_back("--resume");
         return words;
     }
@@ -97,9 +97,14 @@ protected:
     /// no suppression can name them. The same sweep alone does look.
     static std::vector<std::string> ranks(int count, const std::vector<std::string>& words) {
         const char* given = std::getenv("ASAN_OPTIONS");
-        std::vector<std::string> all{"env", "ASAN_OPTIONS=" + std::string(given == nullptr ? "" : given) + ":detect_leaks=0",
-                                     "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
-                                     "mpirun", "--oversubscribe", "-n", std::to_string(count)};
+        std::vector<std::string> all{"env",
+                                     "ASAN_OPTIONS=" + std::string(given == nullptr ? "" : given) + ":detect_leaks=0",
+                                     "OMPI_ALLOW_RUN_AS_ROOT=1",
+                                     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+                                     "mpirun",
+                                     "--oversubscribe",
+                                     "-n",
+                                     std::to_string(count)};
         all.insert(all.end(), words.begin(), words.end());
         return all;
     }
@@ -116,8 +121,8 @@ protected:
         EXPECT_EQ(first, second);
     }
 
-    /// Sweeps whose levels depend on others: Ipopt starts from the orbit before, eight levels in a row; `nearest` follows
-    /// them all.
+    /// Sweeps whose levels depend on others: Ipopt starts from the orbit before, eight levels in a row; `nearest`
+    /// follows them all.
     struct Chained {
         std::string objective, solver, levels;
     };
@@ -191,7 +196,8 @@ TEST_F(SweepProcess, ALostRankLosesNothingThatWasStored) {
         const fs::path out = folder_ / (all ? "all" : "one");
         const pid_t child = start(ranks(2, sweep(scene_, out)));
         // A minute at most for the store to be there; then every process at once, or the last rank alone, is killed.
-        for (int i = 0; i < 1200 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite"); ++i) {
+        for (int i = 0; i < 1200 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite");
+             ++i) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
         }
         const auto started = children_of(child);
@@ -221,7 +227,8 @@ TEST_F(SweepProcess, AWarningOfTheTimeLimitEndsRanksInOrder) {
     const int code = run(sweep(scene, alone, false, "both"));
     const fs::path out = folder_ / "out";
     const pid_t child = start(ranks(2, sweep(scene, out, false, "both")));
-    for (int i = 0; i < 6000 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite"); ++i) {
+    for (int i = 0; i < 6000 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite");
+         ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     const bool was_done = fs::exists(out / "results.sqlite");
@@ -252,7 +259,9 @@ TEST_F(SweepProcess, AReadOnlyFolderIsRefusedAndKept) {
     EXPECT_TRUE(code == 0 || code == 4) << output();
     const std::string store = contents(out / "results.sqlite");
     constexpr auto shut = fs::perms::group_write | fs::perms::others_write | fs::perms::owner_write;
-    fs::permissions(folder_, fs::perms::others_read | fs::perms::others_exec | fs::perms::group_read | fs::perms::group_exec, fs::perm_options::add);
+    fs::permissions(folder_,
+                    fs::perms::others_read | fs::perms::others_exec | fs::perms::group_read | fs::perms::group_exec,
+                    fs::perm_options::add);
     for (const auto& place : {out / "charts", out}) fs::permissions(place, shut, fs::perm_options::remove);
     for (const auto& words : {sweep(scene_, out), sweep(scene_, out, true), sweep(scene_, out / "new"),
                               std::vector<std::string>{NSMA_PROGRAM, "export", out.string()},
@@ -264,7 +273,8 @@ TEST_F(SweepProcess, AReadOnlyFolderIsRefusedAndKept) {
         EXPECT_EQ(output().find('\n'), output().size() - 1) << output();
     }
     EXPECT_EQ(contents(out / "results.sqlite"), store);
-    for (const auto& place : {out / "charts", out}) fs::permissions(place, fs::perms::owner_write, fs::perm_options::add);
+    for (const auto& place : {out / "charts", out})
+        fs::permissions(place, fs::perms::owner_write, fs::perm_options::add);
     EXPECT_EQ(run(sweep(scene_, out, true)), code) << output();
 }
 

@@ -1,4 +1,5 @@
-// nsma_measure COMMAND...: runs it and prints wall time [s], CPU time [s] and the peak memory of its largest process [MB].
+// nsma_measure COMMAND...: runs it and prints wall time [s], CPU time [s] and the peak memory of its largest process
+// [MB].
 
 #include <chrono>
 #include <cstdio>

@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <initializer_list>
+#include <memory>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -12,18 +12,18 @@
 #include <benchmark/benchmark.h>
 
 #include "../orbit/dense_kernel.hpp"
+#include "nsma/wave/marcher.hpp"
+#include "wave/dense_wfem.hpp"
 #include "nsma/orbit/sieve.hpp"
-#include "set/level_points.hpp"
-#include "search/orbit_program.hpp"
-#include "nsma/search/orbit_solver.hpp"
 #include "numerics/solver.hpp"
-#include "report/sweep/sweep_store.hpp"
-#include "study/accuracy/accuracy.hpp"
+#include "set/level_points.hpp"
+#include "nsma/search/orbit_solver.hpp"
+#include "search/orbit_program.hpp"
 #include "nsma/study/scan.hpp"
+#include "study/accuracy/accuracy.hpp"
 #include "study/sweep/sweep_queue.hpp"
 #include "study/sweep/work_messages.hpp"
-#include "wave/dense_wfem.hpp"
-#include "nsma/wave/marcher.hpp"
+#include "report/sweep/sweep_store.hpp"
 
 namespace {
 
@@ -55,10 +55,13 @@ void scan_all(benchmark::State& state, ScanMethod method) {
     long admissible = 0, failed = 0;
     for (auto _ : state) {
         admissible = failed = 0;
-        scan(scene, [&](const PatternRecord& record) {
-            admissible += record.verdict == Verdict::admissible;
-            failed += record.verdict == Verdict::failed;
-        }, [] { return true; }, method);
+        scan(
+            scene,
+            [&](const PatternRecord& record) {
+                admissible += record.verdict == Verdict::admissible;
+                failed += record.verdict == Verdict::failed;
+            },
+            [] { return true; }, method);
     }
     label(state, {{"admissible", static_cast<double>(admissible)}, {"failed", static_cast<double>(failed)}});
 }
@@ -114,7 +117,8 @@ BENCHMARK(march_dense)->Arg(24)->Arg(48)->Arg(96)->Arg(192)->Unit(benchmark::kMi
 
 // One call of one solver on the first-mode pattern of m amplitudes at half its interval (in logarithm).
 void solve(benchmark::State& state, bool with_ipopt) {
-    const PatternProblem problem = pattern_problem(accuracy_pattern(static_cast<int>(state.range(0)), 1), 1, {.prove = false});
+    const PatternProblem problem =
+        pattern_problem(accuracy_pattern(static_cast<int>(state.range(0)), 1), 1, {.prove = false});
     const double level = std::sqrt(*problem.interval.least * *problem.interval.greatest);
     const OrbitProgram program =
         orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, level, 0.0);
@@ -142,7 +146,8 @@ void whole_orbit(benchmark::State& state) {
         OrbitSolver solver;
         answer = solver.solve(Bar{}, problem, {.level = 1.3 * *problem.interval.least, .reference = {}});
     }
-    label(state, {{"admissible", answer.verdict == Verdict::admissible}, {"gap", answer.optimality ? answer.optimality->gap : 1.0}});
+    label(state, {{"admissible", answer.verdict == Verdict::admissible},
+                  {"gap", answer.optimality ? answer.optimality->gap : 1.0}});
 }
 BENCHMARK(whole_orbit)->Arg(50)->Arg(100)->Arg(200)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
 
@@ -150,7 +155,8 @@ BENCHMARK(whole_orbit)->Arg(50)->Arg(100)->Arg(200)->Arg(400)->Unit(benchmark::k
 void serve(benchmark::State& state) {
     Scene scene;
     scene.mesh.cells = static_cast<int>(state.range(0));
-    scene.patterns = ListSelection{{{proportional(scene.mesh.cells).free_steps, proportional(scene.mesh.cells).contact_steps}}};
+    scene.patterns =
+        ListSelection{{{proportional(scene.mesh.cells).free_steps, proportional(scene.mesh.cells).contact_steps}}};
     scene.levels.resize(1'000'000, 12.0);
     scene.text = "benchmark";
     SweepWorker worker(scene, {});

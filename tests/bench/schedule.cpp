@@ -17,7 +17,8 @@ Schedule simulated_schedule(const std::vector<double>& unit_seconds, const Sched
     }
     const auto expect_time = [](const char* name, double time) {
         if (!(std::isfinite(time) && time >= 0)) {
-            throw std::invalid_argument(std::string(name) + ": expected a finite time >= 0, got " + std::to_string(time));
+            throw std::invalid_argument(std::string(name) + ": expected a finite time >= 0, got " +
+                                        std::to_string(time));
         }
     };
     expect_time("service", options.service);

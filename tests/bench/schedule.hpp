@@ -6,9 +6,9 @@ namespace nsma {
 
 /// How a sweep on many ranks would go, from recorded times of its units.
 struct ScheduleOptions {
-    int workers = 1;       ///< processes that compute, >= 1
-    double service = 0;    ///< [s] rank 0 needs for one result: store it, choose and send the next unit
-    double latency = 0;    ///< [s] of one message, each way
+    int workers = 1;     ///< processes that compute, >= 1
+    double service = 0;  ///< [s] rank 0 needs for one result: store it, choose and send the next unit
+    double latency = 0;  ///< [s] of one message, each way
 };
 
 struct Schedule {

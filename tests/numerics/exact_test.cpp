@@ -40,8 +40,9 @@ TEST(Exact, LeadingZerosAreDecimal) {
 }
 
 TEST(Exact, JunkIsNotANumber) {
-    for (const char* text : {"", "-", "/", "1/", "/2", "-/2", "1/0", "1/00", "--1", "+1", "1/-2", "1//2", "1/2/3", " 1",
-                             "1 ", "1.5", "1e3", "0x10", "nan", "inf", "1/+2", "١", "1\n", "a", "12a", "1/2b"}) {
+    for (const char* text :
+         {"",   "-",  "/",   "1/",  "/2",   "-/2", "1/0", "1/00", "--1", "+1",  "1/-2", "1//2", "1/2/3",
+          " 1", "1 ", "1.5", "1e3", "0x10", "nan", "inf", "1/+2", "١",   "1\n", "a",    "12a",  "1/2b"}) {
         EXPECT_FALSE(parse_rational(text)) << '"' << text << '"';
     }
     EXPECT_FALSE(parse_rational(std::string("1\0", 2)));
@@ -84,7 +85,7 @@ TEST(Exact, ToDoubleRoundsToTheNearest) {
     EXPECT_EQ(to_double(Rational(1, 3)), 1.0 / 3.0);  // division of two doubles is the nearest double
     EXPECT_EQ(to_double(Rational(12, 11)), 12.0 / 11.0);
     const Integer big = Integer(1) << 53;
-    EXPECT_EQ(to_double(Rational(big + 1)), 0x1p53);       // a tie goes to even
+    EXPECT_EQ(to_double(Rational(big + 1)), 0x1p53);  // a tie goes to even
     EXPECT_EQ(to_double(Rational(big + 3)), 0x1p53 + 4);
     EXPECT_EQ(to_double(Rational(2 * big + 3, 2)), 0x1p53 + 2);  // above the tie
     std::mt19937 random(3);

@@ -85,8 +85,7 @@ TEST(NonnegativeLeastSquares, SmallIntegersWithTies) {
     std::mt19937 random(4);
     std::uniform_int_distribution<int> draw(-1, 1);
     for (int trial = 0; trial < 200; ++trial) {
-        const MatrixXd matrix =
-            MatrixXd::NullaryExpr(4, 9, [&](Eigen::Index, Eigen::Index) { return draw(random); });
+        const MatrixXd matrix = MatrixXd::NullaryExpr(4, 9, [&](Eigen::Index, Eigen::Index) { return draw(random); });
         const VectorXd target = VectorXd::NullaryExpr(4, [&](Eigen::Index) { return draw(random); });
         const auto solution = nonnegative_least_squares(matrix, target);
         ASSERT_TRUE(solution.converged);
@@ -125,8 +124,7 @@ TEST(NonnegativeLeastSquares, ZeroTargetAndNoColumns) {
 }
 
 TEST(NonnegativeLeastSquares, SizeMismatchThrows) {
-    EXPECT_THROW((void)nonnegative_least_squares(MatrixXd::Identity(2, 2), VectorXd::Zero(3)),
-                 std::invalid_argument);
+    EXPECT_THROW((void)nonnegative_least_squares(MatrixXd::Identity(2, 2), VectorXd::Zero(3)), std::invalid_argument);
 }
 
 }  // namespace

@@ -139,8 +139,6 @@ TEST(LinearSolver, SizeMismatchThrows) {
     EXPECT_THROW((void)solver.minimise(VectorXd::Zero(3)), std::invalid_argument);
 }
 
-TEST(LinearSolver, NamesItsVersion) {
-    EXPECT_TRUE(nsma::clp_version().find('.') != std::string::npos);
-}
+TEST(LinearSolver, NamesItsVersion) { EXPECT_TRUE(nsma::clp_version().find('.') != std::string::npos); }
 
 }  // namespace

@@ -58,19 +58,19 @@ TEST(Program, GradientByFiniteDifferences) {
 TEST(Program, ViolationIsTheWorstOfEachKind) {
     const Program program = example();
     EXPECT_EQ(program.violation(Vector3d(1, 0, 0)), 0.0);
-    EXPECT_DOUBLE_EQ(program.violation(Vector3d(1, 0, 0.25)), 0.25);   // equality
-    EXPECT_DOUBLE_EQ(program.violation(Vector3d(-1, 0, -2)), 1.0);     // lower bound
+    EXPECT_DOUBLE_EQ(program.violation(Vector3d(1, 0, 0.25)), 0.25);  // equality
+    EXPECT_DOUBLE_EQ(program.violation(Vector3d(-1, 0, -2)), 1.0);    // lower bound
     EXPECT_DOUBLE_EQ(program.violation(Vector3d(0, 1, -1)), 0.0);
-    EXPECT_DOUBLE_EQ(program.violation(Vector3d(0, 2, -1)), 3.0);      // sphere: 4 - 1
+    EXPECT_DOUBLE_EQ(program.violation(Vector3d(0, 2, -1)), 3.0);           // sphere: 4 - 1
     EXPECT_DOUBLE_EQ(program.sphere_residual(Vector3d(0.5, 0, 9)), -0.75);  // x2 is off the sphere
     Program flat = example();
     flat.sphere_variables = 0;
     EXPECT_EQ(flat.sphere_residual(Vector3d(5, 5, 5)), 0.0);
-    EXPECT_DOUBLE_EQ(flat.violation(Vector3d(2, 3, 1)), 3.0);          // inequality: 5 - 2
-    EXPECT_DOUBLE_EQ(flat.violation(Vector3d(0, 9, -1)), 7.0);         // inequality over the bound
+    EXPECT_DOUBLE_EQ(flat.violation(Vector3d(2, 3, 1)), 3.0);   // inequality: 5 - 2
+    EXPECT_DOUBLE_EQ(flat.violation(Vector3d(0, 9, -1)), 7.0);  // inequality over the bound
     flat.inequality_values[0] = 100;
-    EXPECT_DOUBLE_EQ(flat.violation(Vector3d(0, 9, -1)), 4.0);         // upper bound
-    EXPECT_DOUBLE_EQ(flat.violation(Vector3d(3, 0, 2)), 0.0);          // slack is no violation
+    EXPECT_DOUBLE_EQ(flat.violation(Vector3d(0, 9, -1)), 4.0);  // upper bound
+    EXPECT_DOUBLE_EQ(flat.violation(Vector3d(3, 0, 2)), 0.0);   // slack is no violation
 }
 
 TEST(Program, ViolationOfNonsenseIsInfinite) {

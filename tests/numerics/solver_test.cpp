@@ -66,7 +66,8 @@ TEST(Solvers, AgreeOnAGridOfStarts) {
         for (int i = 0; i < 12; ++i) {
             const double angle = 0.3 + 2 * M_PI * i / 12;
             const double height = std::sin(1.7 * i);
-            const Vector3d from(std::cos(angle) * std::cos(height), std::sin(angle) * std::cos(height), std::sin(height));
+            const Vector3d from(std::cos(angle) * std::cos(height), std::sin(angle) * std::cos(height),
+                                std::sin(height));
             const auto a = ipopt.solve(item.program, from);
             const auto b = solve_with_nlopt(NloptMethod::slsqp, item.program, from);
             ASSERT_LT(item.program.violation(a.x), 1e-6) << item.name << " start " << i << " " << a.status;

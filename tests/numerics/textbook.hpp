@@ -50,9 +50,7 @@ inline Case linear_on_cap(double bound = 0.5) {
 }
 
 /// min 3x + 4y on the unit sphere: minus the gradient over its norm.
-inline Case linear_on_sphere() {
-    return {"linear on the sphere", unit_sphere({3, 4, 0}), Vector3d(-0.6, -0.8, 0), -5};
-}
+inline Case linear_on_sphere() { return {"linear on the sphere", unit_sphere({3, 4, 0}), Vector3d(-0.6, -0.8, 0), -5}; }
 
 /// min x'Hx/2 + g.x on the unit sphere, H = diag(-2, 0, 1). With 2 mu = 3 the matrix H + 2 mu I =
 /// diag(1, 3, 4) is positive definite, so x* = (2, -1, 2)/3 is the one global optimum of
@@ -105,8 +103,6 @@ inline Program infeasible() {
 }
 
 /// The programs with one local optimum, or one that any sensible start leads to.
-inline std::vector<Case> all() {
-    return {linear_on_cap(), linear_on_sphere(), trust_region(), circle(), convex()};
-}
+inline std::vector<Case> all() { return {linear_on_cap(), linear_on_sphere(), trust_region(), circle(), convex()}; }
 
 }  // namespace textbook

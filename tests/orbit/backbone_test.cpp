@@ -27,8 +27,7 @@ TEST(Backbone, EnergyRatiosByHand) {
     EXPECT_THROW((void)nsma::backbone_energy_ratio(2, 1.25), std::invalid_argument);
     EXPECT_THROW((void)nsma::backbone_energy_ratio(0, 2.0), std::invalid_argument);
     EXPECT_THROW((void)nsma::backbone_energy_ratio(1, -2.0), std::invalid_argument);
-    EXPECT_THROW((void)nsma::backbone_energy_ratio(1, std::numeric_limits<double>::quiet_NaN()),
-                 std::invalid_argument);
+    EXPECT_THROW((void)nsma::backbone_energy_ratio(1, std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
 }
 
 TEST(Backbone, IntervalsByHand) {
@@ -103,8 +102,8 @@ TEST_P(BackboneOrbits, HaveTheExactEnergyAndSurviveTheMarcher) {
     const int mode = GetParam();
     int cases[2] = {0, 0};
     // The intervals of T narrow as 1/k^3: finer meshes for the higher modes.
-    const std::vector<int> meshes = mode <= 2 ? std::vector<int>{5, 7, 11, 16, 23, 37}
-                                              : std::vector<int>{17, 23, 29, 37, 43, 53, 59};
+    const std::vector<int> meshes =
+        mode <= 2 ? std::vector<int>{5, 7, 11, 16, 23, 37} : std::vector<int>{17, 23, 29, 37, 43, 53, 59};
     for (const int cells : meshes) {
         for (const int gap_sign : {1, -1}) {
             for (const Pattern& pattern : mode_patterns(mode, cells, gap_sign)) {
@@ -116,15 +115,13 @@ TEST_P(BackboneOrbits, HaveTheExactEnergyAndSurviveTheMarcher) {
                 bar.gap = gap_sign;
                 const double row = nsma::contact_row(kernel)[0];
                 ASSERT_NE(row, 0.0);
-                const nsma::Orbit orbit =
-                    make_orbit(bar, kernel, Eigen::VectorXd::Constant(1, gap_sign / row));
+                const nsma::Orbit orbit = make_orbit(bar, kernel, Eigen::VectorXd::Constant(1, gap_sign / row));
                 const double exact = nsma::backbone_energy_ratio(mode, pattern.period_ratio());
                 // T/tau is rounded once; the denominator is at least 1/N.
                 EXPECT_NEAR(nsma::energy_ratio(orbit) / exact, 1.0, 1e-12);
                 const nsma::Replay replay = nsma::replay(orbit, exact, 1000);
-                EXPECT_TRUE(replay.accepted)
-                    << "N " << cells << ", r " << pattern.free_steps << ", p "
-                    << pattern.contact_steps << ", worst " << replay.violations.worst();
+                EXPECT_TRUE(replay.accepted) << "N " << cells << ", r " << pattern.free_steps << ", p "
+                                             << pattern.contact_steps << ", worst " << replay.violations.worst();
                 EXPECT_EQ(replay.march.free_steps, pattern.free_steps);
                 EXPECT_EQ(replay.march.contact_steps, pattern.contact_steps);
                 EXPECT_EQ(replay.march.contact_phases, 1);

@@ -33,8 +33,7 @@ const Pattern patterns[] = {{6, 16, 4}, {6, 23, 1}, {2, 6, 1},    {3, 3, 1},   {
 /// Q0 from the definitions: b_k = eps_k alpha, alpha = beta u/dt, and the literal state of waves.
 State initial_state(const Bar& bar, const Kernel& kernel, const VectorXd& beta) {
     const int cells = kernel.pattern.cells;
-    const VectorXd waves =
-        nsma::wave_basis(kernel) * beta * bar.displacement_unit() / Mesh{cells}.time_step(bar);
+    const VectorXd waves = nsma::wave_basis(kernel) * beta * bar.displacement_unit() / Mesh{cells}.time_step(bar);
     State state(2 * cells);
     for (int i = 1; i <= cells; ++i) {
         state[i - 1] = -bar.impedance() * (waves[cells - i] + waves[cells + i - 1]);
@@ -56,8 +55,7 @@ Marched march_literally(const Bar& bar, const Pattern& pattern, State state) {
         result.tip[n] = nsma::tip_displacement(bar, mesh, state) / bar.displacement_unit();
         if (n >= pattern.free_steps && n < pattern.period_steps()) {
             result.force[n - pattern.free_steps] =
-                bar.area *
-                (state[pattern.cells - 1] - bar.impedance() * state[2 * pattern.cells - 1]) /
+                bar.area * (state[pattern.cells - 1] - bar.impedance() * state[2 * pattern.cells - 1]) /
                 bar.force_unit();
         }
         nsma::dense::cell_step(bar, mesh, n >= pattern.free_steps, state);
@@ -98,19 +96,15 @@ TEST(Conditions, ConflictAndNoContactByHand) {
     // N = 1, (1, 2): g = 1, visits 0, 2, 1 with signs + - - and closes with no flip: one free
     // step, dead. N = 1, (2, 2): g = 2, q = 1, s = 0: dead. N = 2, (2, 3): g = 1, visits
     // 0 4 3 2 1: + - - - -, closes with a flip at 1. Contact 2 3 4 all minus.
-    EXPECT_EQ(conditions(exact_kernel({2, 2, 3}), 1).bound_of,
-              (std::vector<Sign>{Sign::nonpositive}));
+    EXPECT_EQ(conditions(exact_kernel({2, 2, 3}), 1).bound_of, (std::vector<Sign>{Sign::nonpositive}));
     // N = 3, (2, 7): g = 3, q = 0, s = 2: class 2 alone lives, steps 2 5 8, all contact: + + +.
-    EXPECT_EQ(conditions(exact_kernel({3, 2, 7}), 1).bound_of,
-              (std::vector<Sign>{Sign::nonnegative}));
+    EXPECT_EQ(conditions(exact_kernel({3, 2, 7}), 1).bound_of, (std::vector<Sign>{Sign::nonnegative}));
     // N = 4, (3, 3): g = 2, q = 1, s = 1: class 0 lives, visits 0 2 4: + - +; contact step 4
     // alone. N = 4, (8, 2) g = 2, q = 4: class 0 visits 0 8 6 4 2: + - - + -: contact 8.
-    EXPECT_EQ(conditions(exact_kernel({4, 3, 3}), 1).bound_of,
-              (std::vector<Sign>{Sign::nonnegative}));
+    EXPECT_EQ(conditions(exact_kernel({4, 3, 3}), 1).bound_of, (std::vector<Sign>{Sign::nonnegative}));
     EXPECT_EQ(conditions(exact_kernel({4, 8, 2}), 1).bound_of[0], Sign::nonpositive);
     // N = 3, (4, 1): g = 1, visits 0 1 2 3 4: + - + - +.
-    EXPECT_EQ(conditions(exact_kernel({3, 4, 1}), 1).bound_of,
-              (std::vector<Sign>{Sign::nonnegative}));
+    EXPECT_EQ(conditions(exact_kernel({3, 4, 1}), 1).bound_of, (std::vector<Sign>{Sign::nonnegative}));
     // N = 6, (5, 3): g = 4, q = 1, s = 1: class 0 lives, visits 0 4: + -, no contact step.
     EXPECT_EQ(conditions(exact_kernel({6, 5, 3}), 1).bound_of, (std::vector<Sign>{Sign::free}));
     // N = 5, (4, 3): g = 1, visits 0 3 6 2 5 1 4: + - + + - - +; contact 4 5 6: + - +, conflict.
@@ -148,8 +142,7 @@ TEST(Conditions, ContactRowsAreOneRowAndRowsAreWindowSums) {
             VectorXi sum = VectorXi::Zero(kernel.dimension());
             for (int k = n; k < n + 2 * pattern.cells; ++k) {
                 if (kernel.column(k % period) >= 0) {
-                    sum[kernel.column(k % period)] -=
-                        kernel.sign[static_cast<std::size_t>(k % period)];
+                    sum[kernel.column(k % period)] -= kernel.sign[static_cast<std::size_t>(k % period)];
                 }
             }
             EXPECT_EQ(rows.row(n), sum.transpose());
@@ -164,8 +157,7 @@ TEST(Conditions, EnergyIsTheSphere) {
             const Kernel kernel = exact_kernel(pattern);
             const VectorXd beta = random_beta(kernel.dimension(), random);
             const double ratio =
-                nsma::energy(bar, Mesh{pattern.cells}, initial_state(bar, kernel, beta)) /
-                bar.energy_unit();
+                nsma::energy(bar, Mesh{pattern.cells}, initial_state(bar, kernel, beta)) / bar.energy_unit();
             const Conditions limits = conditions(kernel, bar.gap_sign());
             // Sums of 40 squares.
             EXPECT_NEAR(limits.energy_factor() * beta.squaredNorm() / ratio, 1.0, 1e-14);
@@ -187,8 +179,7 @@ TEST(Conditions, BoundsAreTheSignsOfTheContactForce) {
                 VectorXd beta = VectorXd::Zero(kernel.dimension());
                 beta[column] = 1.0;
                 // Linear: one unit amplitude tells both signs.
-                const VectorXd force =
-                    march_literally(bar, pattern, initial_state(bar, kernel, beta)).force;
+                const VectorXd force = march_literally(bar, pattern, initial_state(bar, kernel, beta)).force;
                 const bool tension_if_positive = force.maxCoeff() > 1e-9;   // forces are 0 or
                 const bool tension_if_negative = force.minCoeff() < -1e-9;  // 2N, up to rounding
                 EXPECT_EQ(tension_if_positive, sign == Sign::nonpositive || sign == Sign::zero);

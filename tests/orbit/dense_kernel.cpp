@@ -12,8 +12,7 @@ Eigen::MatrixXd svd_kernel(const Bar& bar, const Pattern& pattern, double tolera
     validate(pattern);
     const int cells = pattern.cells;
     const double z = bar.impedance();
-    Eigen::MatrixXd matrix =
-        periodicity_matrix(bar, Mesh{cells}, pattern.free_steps, pattern.contact_steps);
+    Eigen::MatrixXd matrix = periodicity_matrix(bar, Mesh{cells}, pattern.free_steps, pattern.contact_steps);
     // In the coordinates [sigma/z; v] the steps are orthogonal: no unit spoils the ranks.
     matrix.topRightCorner(cells, cells) /= z;
     matrix.bottomLeftCorner(cells, cells) *= z;

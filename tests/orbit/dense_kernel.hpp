@@ -11,7 +11,6 @@ namespace nsma::dense {
 /// singular value decomposition of the literal matrix. Reference for nsma::exact_kernel.
 /// Coordinates [sigma/z; v]. Singular values up to `tolerance` times max(1, the largest) are zero:
 /// they lie in [0, 2], and S_T itself may vanish. Source: [1] Eq. (4).
-[[nodiscard]] Eigen::MatrixXd svd_kernel(const Bar& bar, const Pattern& pattern,
-                                         double tolerance = 1e-9);
+[[nodiscard]] Eigen::MatrixXd svd_kernel(const Bar& bar, const Pattern& pattern, double tolerance = 1e-9);
 
 }  // namespace nsma::dense

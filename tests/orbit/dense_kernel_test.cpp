@@ -25,10 +25,9 @@ TEST(DenseKernel, BasisIsOrthonormalAndPeriodic) {
             EXPECT_LT((basis.transpose() * basis - identity).norm(), 1e-13);
             MatrixXd states = basis;
             states.topRows(pattern.cells) *= bar.impedance();
-            MatrixXd back =
-                nsma::dense::periodicity_matrix(bar, nsma::Mesh{pattern.cells}, pattern.free_steps,
-                                                pattern.contact_steps) *
-                states;
+            MatrixXd back = nsma::dense::periodicity_matrix(bar, nsma::Mesh{pattern.cells}, pattern.free_steps,
+                                                            pattern.contact_steps) *
+                            states;
             back.topRows(pattern.cells) /= bar.impedance();
             EXPECT_LT(back.norm(), 1e-12);
         }
@@ -36,10 +35,8 @@ TEST(DenseKernel, BasisIsOrthonormalAndPeriodic) {
 }
 
 TEST(DenseKernel, UnitsDoNotChangeTheRank) {
-    for (const Pattern& pattern :
-         {Pattern{6, 16, 4}, Pattern{6, 23, 1}, Pattern{6, 3, 5}, Pattern{4, 5, 2}}) {
-        EXPECT_EQ(nsma::dense::svd_kernel(steel, pattern).cols(),
-                  nsma::dense::svd_kernel(Bar{}, pattern).cols());
+    for (const Pattern& pattern : {Pattern{6, 16, 4}, Pattern{6, 23, 1}, Pattern{6, 3, 5}, Pattern{4, 5, 2}}) {
+        EXPECT_EQ(nsma::dense::svd_kernel(steel, pattern).cols(), nsma::dense::svd_kernel(Bar{}, pattern).cols());
     }
 }
 
@@ -50,8 +47,7 @@ TEST(DenseKernel, VanishingMatrixHasTheWholeSpace) {
 
 TEST(DenseKernel, Misuse) {
     EXPECT_THROW((void)nsma::dense::svd_kernel(Bar{}, {3, 0, 6}), std::invalid_argument);
-    EXPECT_THROW((void)nsma::dense::svd_kernel(Bar{.density = 0.0}, {3, 1, 6}),
-                 std::invalid_argument);
+    EXPECT_THROW((void)nsma::dense::svd_kernel(Bar{.density = 0.0}, {3, 1, 6}), std::invalid_argument);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "wave/dense_wfem.hpp"
 #include "dense_kernel.hpp"
+#include "wave/dense_wfem.hpp"
 
 namespace {
 
@@ -55,9 +55,8 @@ TEST(Kernel, DeadClassesByHand) {
 }
 
 TEST(Kernel, WavesRepeatAfterThePeriodAndFlipOnlyInFreeFlight) {
-    for (const Pattern& pattern :
-         {Pattern{1000, 2345, 655}, Pattern{1000, 2399, 1}, Pattern{360, 1, 719}, Pattern{50, 3, 2},
-          Pattern{7, 300, 41}, Pattern{500, 1000, 600}}) {
+    for (const Pattern& pattern : {Pattern{1000, 2345, 655}, Pattern{1000, 2399, 1}, Pattern{360, 1, 719},
+                                   Pattern{50, 3, 2}, Pattern{7, 300, 41}, Pattern{500, 1000, 600}}) {
         const Kernel kernel = exact_kernel(pattern);
         const int period = pattern.period_steps();
         EXPECT_EQ(kernel.dimension(), nsma::kernel_dimension(pattern));
@@ -78,14 +77,12 @@ TEST(Kernel, WavesRepeatAfterThePeriodAndFlipOnlyInFreeFlight) {
 }
 
 TEST(Kernel, WaveBasisIsOrthogonal) {
-    for (const Pattern& pattern :
-         {Pattern{6, 16, 4}, Pattern{6, 23, 1}, Pattern{4, 3, 5}, Pattern{9, 2, 1}}) {
+    for (const Pattern& pattern : {Pattern{6, 16, 4}, Pattern{6, 23, 1}, Pattern{4, 3, 5}, Pattern{9, 2, 1}}) {
         const Kernel kernel = exact_kernel(pattern);
         const MatrixXd basis = nsma::wave_basis(kernel);
         EXPECT_EQ(basis.rows(), 2 * pattern.cells);
         const double squared_norm = 2.0 * pattern.cells / kernel.classes;
-        EXPECT_EQ(basis.transpose() * basis,
-                  squared_norm * MatrixXd::Identity(basis.cols(), basis.cols()));
+        EXPECT_EQ(basis.transpose() * basis, squared_norm * MatrixXd::Identity(basis.cols(), basis.cols()));
     }
 }
 
@@ -112,8 +109,7 @@ TEST_P(KernelAgainstDense, EveryPattern) {
     for (const Pattern& pattern : nsma::patterns_in(cells, {.period_hi = 6 * cells})) {
         const MatrixXd dense = nsma::dense::svd_kernel(nsma::Bar{}, pattern);
         const Kernel kernel = exact_kernel(pattern);
-        ASSERT_EQ(kernel.dimension(), dense.cols())
-            << "r " << pattern.free_steps << ", p " << pattern.contact_steps;
+        ASSERT_EQ(kernel.dimension(), dense.cols()) << "r " << pattern.free_steps << ", p " << pattern.contact_steps;
         ASSERT_EQ(nsma::kernel_dimension(pattern), dense.cols());
         if (dense.cols() > 0) {
             // Same dimension, and no part of the exact space outside the dense one.
@@ -135,8 +131,8 @@ INSTANTIATE_TEST_SUITE_P(UpToEightCells, KernelAgainstDense, testing::Range(1, 9
 /// And without any decomposition: the literal steps bring every basis state back.
 TEST(Kernel, LiteralStepsBringEveryBasisStateBack) {
     for (const nsma::Bar& bar : {nsma::Bar{}, nsma::Bar{1.0, 210e9, 7850.0, 1e-4, 1e-4}}) {
-        for (const Pattern& pattern : {Pattern{6, 16, 4}, Pattern{6, 23, 1}, Pattern{20, 48, 16},
-                                       Pattern{20, 60, 20}, Pattern{3, 7, 11}}) {
+        for (const Pattern& pattern :
+             {Pattern{6, 16, 4}, Pattern{6, 23, 1}, Pattern{20, 48, 16}, Pattern{20, 60, 20}, Pattern{3, 7, 11}}) {
             const nsma::Mesh mesh{pattern.cells};
             MatrixXd states = scaled_states(nsma::wave_basis(exact_kernel(pattern)));
             states.topRows(pattern.cells) *= bar.impedance();

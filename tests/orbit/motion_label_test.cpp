@@ -31,7 +31,8 @@ bool same_motion(const LabelledMotion& a, const LabelledMotion& b) {
     const auto one = nsma::fingerprints(a), other = nsma::fingerprints(b);
     const bool shared = one[0] == other[0] || one[1] == other[1];
     bool equal = a.label.free_steps == b.label.free_steps && a.label.contact_steps == b.label.contact_steps;
-    for (std::size_t n = 0; equal && n < a.waves.size(); ++n) equal = std::abs(a.waves[n] - b.waves[n]) <= 1e-9;  // waves of order one
+    for (std::size_t n = 0; equal && n < a.waves.size(); ++n)
+        equal = std::abs(a.waves[n] - b.waves[n]) <= 1e-9;  // waves of order one
     EXPECT_EQ(equal, shared);
     return equal;
 }
@@ -40,7 +41,8 @@ bool same_motion(const LabelledMotion& a, const LabelledMotion& b) {
 std::optional<Orbit> with_waves(const Pattern& pattern, double gap, const std::vector<double>& waves) {
     const auto kernel = nsma::exact_kernel(pattern);
     VectorXd beta(kernel.dimension());
-    for (int j = 0; j < beta.size(); ++j) beta[j] = waves[static_cast<std::size_t>(kernel.class_of[static_cast<std::size_t>(j)])];
+    for (int j = 0; j < beta.size(); ++j)
+        beta[j] = waves[static_cast<std::size_t>(kernel.class_of[static_cast<std::size_t>(j)])];
     for (int n = 0; n < pattern.period_steps(); ++n) {
         const int column = kernel.column(n);
         const double wave = column < 0 ? 0.0 : kernel.sign[static_cast<std::size_t>(n)] * beta[column];
@@ -73,9 +75,9 @@ TEST(MotionLabel, AFreeVibrationLabelledWithItsPeriodsManyTimesOver) {
     }
 }
 
-// Every simplex of a small mesh: amplitudes on a part of its classes leave contact steps without force, so that the motion
-// rests at the wall and has the labels that take such steps from contact into flight, and back. All are one motion, its
-// least label is a pattern that the marcher accepts, and so are its reversals.
+// Every simplex of a small mesh: amplitudes on a part of its classes leave contact steps without force, so that the
+// motion rests at the wall and has the labels that take such steps from contact into flight, and back. All are one
+// motion, its least label is a pattern that the marcher accepts, and so are its reversals.
 TEST(MotionLabel, IsTheSameForEveryLabelShiftAndReversal) {
     std::mt19937_64 random(7);
     int orbits = 0, relabelled = 0, reversed = 0;
@@ -108,7 +110,8 @@ TEST(MotionLabel, IsTheSameForEveryLabelShiftAndReversal) {
                 const auto again = with_waves(least, gap_sign, motion->waves);
                 ASSERT_TRUE(again);
                 EXPECT_TRUE(nsma::replay(*again).accepted);
-                EXPECT_NEAR(nsma::energy_ratio(*again), nsma::energy_ratio(orbit), 1e-12 * nsma::energy_ratio(orbit));  // same sums
+                EXPECT_NEAR(nsma::energy_ratio(*again), nsma::energy_ratio(orbit),
+                            1e-12 * nsma::energy_ratio(orbit));  // same sums
                 const auto own = least_label(*again);
                 ASSERT_TRUE(own);
                 EXPECT_TRUE(same_motion(*own, *motion));

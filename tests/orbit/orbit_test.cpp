@@ -27,8 +27,7 @@ Orbit random_orbit(const Bar& bar, const Pattern& pattern, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     const nsma::Kernel kernel = exact_kernel(pattern);
-    const VectorXd beta =
-        VectorXd::NullaryExpr(kernel.dimension(), [&](Eigen::Index) { return normal(random); });
+    const VectorXd beta = VectorXd::NullaryExpr(kernel.dimension(), [&](Eigen::Index) { return normal(random); });
     return make_orbit(bar, kernel, beta);
 }
 
@@ -69,18 +68,11 @@ TEST(Orbit, FollowsTheLiteralScheme) {
                 const double rounding = 1e-12;
                 for (int n = 0; n < pattern.period_steps(); ++n) {
                     const bool contact = n >= pattern.free_steps;
-                    EXPECT_NEAR(tip[n] / unit, nsma::tip_displacement(bar, mesh, state) / unit,
-                                rounding);
-                    const double end_stress =
-                        contact ? state[cells - 1] - z * state[2 * cells - 1] : 0.0;
-                    EXPECT_NEAR(force[n] / (z * speed * bar.area), end_stress / (z * speed),
-                                rounding);
-                    EXPECT_LT((field.stress.col(n) - state.head(cells)).cwiseAbs().maxCoeff() /
-                                  (z * speed),
-                              rounding);
-                    EXPECT_LT(
-                        (field.velocity.col(n) - state.tail(cells)).cwiseAbs().maxCoeff() / speed,
-                        rounding);
+                    EXPECT_NEAR(tip[n] / unit, nsma::tip_displacement(bar, mesh, state) / unit, rounding);
+                    const double end_stress = contact ? state[cells - 1] - z * state[2 * cells - 1] : 0.0;
+                    EXPECT_NEAR(force[n] / (z * speed * bar.area), end_stress / (z * speed), rounding);
+                    EXPECT_LT((field.stress.col(n) - state.head(cells)).cwiseAbs().maxCoeff() / (z * speed), rounding);
+                    EXPECT_LT((field.velocity.col(n) - state.tail(cells)).cwiseAbs().maxCoeff() / speed, rounding);
                     nsma::dense::cell_step(bar, mesh, contact, state);
                 }
                 EXPECT_EQ(tip[pattern.period_steps()], tip[0]);
@@ -96,12 +88,8 @@ TEST(Orbit, UnitsOnlyScale) {
     const Orbit metal = random_orbit(steel, pattern, 10);
     EXPECT_EQ(nsma::energy_ratio(unit), nsma::energy_ratio(metal));
     // A few roundings of units, relative to the largest value (waves of order 1: 40 of them).
-    EXPECT_LT(
-        (nsma::tip_displacement(unit) - nsma::tip_displacement(metal) / 1e-4).cwiseAbs().maxCoeff(),
-        1e-13);
-    EXPECT_LT((nsma::contact_force(unit) - nsma::contact_force(metal) / steel.force_unit())
-                  .cwiseAbs()
-                  .maxCoeff(),
+    EXPECT_LT((nsma::tip_displacement(unit) - nsma::tip_displacement(metal) / 1e-4).cwiseAbs().maxCoeff(), 1e-13);
+    EXPECT_LT((nsma::contact_force(unit) - nsma::contact_force(metal) / steel.force_unit()).cwiseAbs().maxCoeff(),
               1e-12);
     EXPECT_NEAR(nsma::period(metal) / steel.travel_time(), nsma::period(unit), 1e-15 * 4.0);
 }
@@ -116,8 +104,7 @@ TEST(Orbit, TrivialKernelIsRest) {
 TEST(Orbit, Misuse) {
     const nsma::Kernel kernel = exact_kernel({6, 16, 4});
     EXPECT_THROW((void)make_orbit(Bar{}, kernel, VectorXd::Zero(3)), std::invalid_argument);
-    EXPECT_THROW((void)make_orbit(Bar{.area = -1.0}, kernel, VectorXd::Zero(4)),
-                 std::invalid_argument);
+    EXPECT_THROW((void)make_orbit(Bar{.area = -1.0}, kernel, VectorXd::Zero(4)), std::invalid_argument);
     VectorXd beta = VectorXd::Zero(4);
     beta[2] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW((void)make_orbit(Bar{}, kernel, beta), std::invalid_argument);

@@ -43,7 +43,9 @@ Seen seen(const Pattern& pattern) {
         // Contact end: free v* = v_N - sigma_N/z, in contact sigma* = sigma_N - z v_N; z = 1.
         const Eigen::RowVectorXd stress = states.row(pattern.cells - 1);
         const Eigen::RowVectorXd velocity = states.row(size - 1);
-        const double felt = (flight ? Eigen::RowVectorXd(velocity - stress) : Eigen::RowVectorXd(stress - velocity)).cwiseAbs().maxCoeff();
+        const double felt = (flight ? Eigen::RowVectorXd(velocity - stress) : Eigen::RowVectorXd(stress - velocity))
+                                .cwiseAbs()
+                                .maxCoeff();
         if (felt > 1e-9) (flight ? result.moves : result.presses) = true;
         states = (flight ? free : contact) * states;
     }

@@ -53,8 +53,7 @@ TEST(Pattern, CountsOfSixCells) {
 
 TEST(Pattern, RangesAreOrderedAndBounded) {
     const std::vector<Pattern> expected = {{4, 1, 3}, {4, 2, 2}, {4, 2, 3}, {4, 3, 2}};
-    EXPECT_EQ(patterns_in(4, {.period_lo = 4, .period_hi = 5, .contact_lo = 2, .contact_hi = 3}),
-              expected);
+    EXPECT_EQ(patterns_in(4, {.period_lo = 4, .period_hi = 5, .contact_lo = 2, .contact_hi = 3}), expected);
     EXPECT_EQ(patterns_in(4, {.period_lo = -7, .period_hi = 2}), (std::vector<Pattern>{{4, 1, 1}}));
     EXPECT_TRUE(patterns_in(4, {.period_lo = 6, .period_hi = 5}).empty());
     EXPECT_TRUE(patterns_in(4, {.period_lo = 2, .period_hi = 5, .contact_lo = 5}).empty());
@@ -67,8 +66,7 @@ TEST(Pattern, Misuse) {
     EXPECT_THROW(nsma::validate(Pattern{1, 1, 0}), std::invalid_argument);
     EXPECT_THROW((void)kernel_dimension({1, -1, 1}), std::invalid_argument);
     EXPECT_THROW((void)patterns_in(0, {}), std::invalid_argument);
-    EXPECT_THROW((void)patterns_in(1, {.period_hi = nsma::max_period_steps + 1}),
-                 std::invalid_argument);
+    EXPECT_THROW((void)patterns_in(1, {.period_hi = nsma::max_period_steps + 1}), std::invalid_argument);
 }
 
 }  // namespace

@@ -107,8 +107,7 @@ TEST(Replay, ClosedGapIsRelativeToTheLargestDisplacement) {
         EXPECT_EQ(mirrored.violations.cond3, 1.0);
         // N = 6, (16, 4), equal amplitudes: the tip goes from 4 size down to -12 size in 8 steps,
         // and stays at 4 size in contact.
-        const Replay off = replay(
-            make_orbit(with_gap(0.0), exact_kernel({6, 16, 4}), VectorXd::Constant(4, -size)));
+        const Replay off = replay(make_orbit(with_gap(0.0), exact_kernel({6, 16, 4}), VectorXd::Constant(4, -size)));
         EXPECT_NEAR(off.violations.cond2, 1.0 / 3.0, 1e-15);  // sums of 12 equal numbers
         EXPECT_FALSE(off.accepted);
     }
@@ -156,15 +155,13 @@ TEST(Replay, AcceptsEveryPointOfTheFirstModeSimplex) {
                     if (trial < m) {
                         weight[trial] = 1.0;  // a vertex
                     } else {
-                        weight = VectorXd::NullaryExpr(
-                            m, [&](Eigen::Index) { return std::pow(10.0, -decades(random)); });
+                        weight =
+                            VectorXd::NullaryExpr(m, [&](Eigen::Index) { return std::pow(10.0, -decades(random)); });
                     }
                     const VectorXd beta = gap_sign * weight.cwiseQuotient(row) / weight.sum();
-                    const Replay verdict =
-                        replay(make_orbit(with_gap(gap_sign), kernel, beta), std::nullopt, 50);
-                    ASSERT_TRUE(verdict.accepted)
-                        << "N " << cells << ", r " << pattern.free_steps << ", p "
-                        << pattern.contact_steps << ", beta " << beta.transpose();
+                    const Replay verdict = replay(make_orbit(with_gap(gap_sign), kernel, beta), std::nullopt, 50);
+                    ASSERT_TRUE(verdict.accepted) << "N " << cells << ", r " << pattern.free_steps << ", p "
+                                                  << pattern.contact_steps << ", beta " << beta.transpose();
                     // Nothing but rounding of 2N waves of order |d|.
                     ASSERT_LT(verdict.march.periodicity_defect, 1e-13);
                     ASSERT_LT(verdict.violations.worst(), 1e-12);
@@ -204,8 +201,7 @@ TEST(Replay, VerdictIsThatOfTheLiteralScheme) {
                     continue;
                 }
                 const Orbit orbit = make_orbit(
-                    bar, kernel,
-                    VectorXd::Constant(1, bar.gap_sign() / double(nsma::contact_row(kernel)[0])));
+                    bar, kernel, VectorXd::Constant(1, bar.gap_sign() / double(nsma::contact_row(kernel)[0])));
                 const nsma::Mesh mesh{cells};
                 nsma::State state = nsma::initial_state(orbit);
                 // Everything is a multiple of |d|/(2N) or so, hence far from 1e-6 when not zero.
@@ -217,16 +213,14 @@ TEST(Replay, VerdictIsThatOfTheLiteralScheme) {
                     const double stress = state[cells - 1] - bar.impedance() * state[2 * cells - 1];
                     admissible = admissible && distance <= tolerance * std::abs(bar.gap);
                     if (contact && n < pattern.period_steps()) {
-                        admissible = admissible &&
-                                     std::abs(distance) <= tolerance * std::abs(bar.gap) &&
+                        admissible = admissible && std::abs(distance) <= tolerance * std::abs(bar.gap) &&
                                      bar.area * stress <= tolerance * bar.force_unit();
                     }
                     nsma::dense::cell_step(bar, mesh, contact, state);
                 }
                 const Replay verdict = replay(orbit, std::nullopt, 20);
-                ASSERT_EQ(verdict.accepted, admissible)
-                    << "N " << cells << ", r " << pattern.free_steps << ", p "
-                    << pattern.contact_steps << ", gap " << bar.gap;
+                ASSERT_EQ(verdict.accepted, admissible) << "N " << cells << ", r " << pattern.free_steps << ", p "
+                                                        << pattern.contact_steps << ", gap " << bar.gap;
                 ++(admissible ? accepted : rejected);
             }
         }

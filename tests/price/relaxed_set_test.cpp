@@ -8,8 +8,8 @@
 #include "time_reversed.hpp"
 
 #include "nsma/set/admissible_set.hpp"
-#include "search/orbit_program.hpp"
 #include "nsma/set/reduction.hpp"
+#include "search/orbit_program.hpp"
 #include "price/relaxed_solver.hpp"
 
 namespace {

@@ -11,8 +11,8 @@
 
 #include "time_reversed.hpp"
 
-#include "search/orbit_program.hpp"
 #include "nsma/search/orbit_solver.hpp"
+#include "search/orbit_program.hpp"
 #include "price/relaxed_solver.hpp"
 #include "price/tied_optima.hpp"
 
@@ -143,9 +143,8 @@ std::optional<Resolved> resolve(const Subject& subject, const Shift& shift) {
 }
 
 bool same_rows(const Resolved& a, const Resolved& b) {
-    return std::any_of(a.held.begin(), a.held.end(), [&](const auto& rows) {
-        return std::find(b.held.begin(), b.held.end(), rows) != b.held.end();
-    });
+    return std::any_of(a.held.begin(), a.held.end(),
+                       [&](const auto& rows) { return std::find(b.held.begin(), b.held.end(), rows) != b.held.end(); });
 }
 
 // As many rows of each condition: the same, or those of an orbit tied by a symmetry.
@@ -338,9 +337,8 @@ TEST(ShadowPrices, EndsOfTheIntervalAgreeWithOneSidedDifferences) {
             for (const auto& vertex : interval.vertices) {
                 if (item.set.energy(vertex) >= interval.greatest * (1 - 1e-10)) ties.push_back(vertex);
             }
-            ends.emplace_back(Objective::max_energy,
-                              OptimumSensitivity(item.set, Objective::max_energy, std::nullopt,
-                                                 interval.vertices.front(), {}, {}, ties));
+            ends.emplace_back(Objective::max_energy, OptimumSensitivity(item.set, Objective::max_energy, std::nullopt,
+                                                                        interval.vertices.front(), {}, {}, ties));
         }
         for (const auto& [objective, optimum] : ends) {
             const Subject subject{item.set, objective, std::nullopt, optimum};

@@ -4,7 +4,8 @@
 
 #include "nsma/orbit/kernel.hpp"
 
-// The amplitudes of the motion run backward, of the same pattern: a wave changes its sign with the free step it arrives in.
+// The amplitudes of the motion run backward, of the same pattern: a wave changes its sign with the free step it arrives
+// in.
 inline Eigen::VectorXd time_reversed(const nsma::Kernel& kernel, const Eigen::VectorXd& beta) {
     const int r = kernel.pattern.free_steps;
     const int steps = kernel.pattern.period_steps();

@@ -225,9 +225,9 @@ void for_each_forgery(const Certificate& original, Visit visit) {
     const Numbers places(counted);
     for (std::size_t i = 0; i < places.fractions.size(); ++i) {
         const Rational value = *places.fractions[i];
-        for (const Rational& other : {Rational(value + 1), Rational(-value), Rational(0), Rational(2 * value),
-                                      Rational(value / 2), Rational(value - Rational(1, 1'000'003)),
-                                      Rational(value + Rational(1, 1'000'003))}) {
+        for (const Rational& other :
+             {Rational(value + 1), Rational(-value), Rational(0), Rational(2 * value), Rational(value / 2),
+              Rational(value - Rational(1, 1'000'003)), Rational(value + Rational(1, 1'000'003))}) {
             if (other == value) continue;
             Certificate forged = original;
             *Numbers(forged).fractions[i] = other;
@@ -267,20 +267,29 @@ void for_each_forgery(const Certificate& original, Visit visit) {
         }
         if (size > 0) edited(what, [&](Certificate& c) { list_of(c).clear(); });
     };
-    shuffle("projection", [](Certificate& c) -> auto& { return c.projection; });
-    shuffle("ray", [](Certificate& c) -> auto& { return c.ray; });
-    shuffle("greatest", [](Certificate& c) -> auto& { return c.greatest; });
-    shuffle("rest", [](Certificate& c) -> auto& { return c.rest; });
-    shuffle("chain", [](Certificate& c) -> auto& { return c.greatest_proof.chain; });
-    shuffle("chain bounds", [](Certificate& c) -> auto& { return c.greatest_proof.chain_bounds; });
+    shuffle(
+        "projection", [](Certificate & c) -> auto& { return c.projection; });
+    shuffle(
+        "ray", [](Certificate & c) -> auto& { return c.ray; });
+    shuffle(
+        "greatest", [](Certificate & c) -> auto& { return c.greatest; });
+    shuffle(
+        "rest", [](Certificate & c) -> auto& { return c.rest; });
+    shuffle(
+        "chain", [](Certificate & c) -> auto& { return c.greatest_proof.chain; });
+    shuffle(
+        "chain bounds", [](Certificate & c) -> auto& { return c.greatest_proof.chain_bounds; });
     // Energies invented, forgotten and moved.
     const auto energy = [&](const char* what, auto energy_of) {
         edited(what, [&](Certificate& c) { energy_of(c) = Rational(7, 3); });
         edited(what, [&](Certificate& c) { energy_of(c).reset(); });
     };
-    energy("least energy", [](Certificate& c) -> auto& { return c.energy_least; });
-    energy("attained energy", [](Certificate& c) -> auto& { return c.energy_attained; });
-    energy("energy bound", [](Certificate& c) -> auto& { return c.energy_bound; });
+    energy(
+        "least energy", [](Certificate & c) -> auto& { return c.energy_least; });
+    energy(
+        "attained energy", [](Certificate & c) -> auto& { return c.energy_attained; });
+    energy(
+        "energy bound", [](Certificate & c) -> auto& { return c.energy_bound; });
 }
 
 TEST(Check, AcceptsNoForgery) {
@@ -300,9 +309,8 @@ TEST(Check, AcceptsNoForgery) {
             EXPECT_EQ(facts.lie(forged), "") << what << " was accepted";
         });
     };
-    for_each_problem(1, largest_mesh == 8 ? 4 : 2, [&](const Pattern& pattern, int gap_sign) {
-        attack(proof_of(pattern, gap_sign).certificate);
-    });
+    for_each_problem(1, largest_mesh == 8 ? 4 : 2,
+                     [&](const Pattern& pattern, int gap_sign) { attack(proof_of(pattern, gap_sign).certificate); });
     attack(proof_of({6, 16, 4}, 1).certificate);
     RecordProperty("rejected", static_cast<int>(rejected));
     RecordProperty("harmless", static_cast<int>(harmless));
@@ -358,7 +366,8 @@ TEST(Check, NamesTheRowThatFails) {
                 const int row = std::stoi(result.reason.substr(lead.size()));
                 // COND1 alone: the rise over x_0, whatever COND2 says.
                 for (int n = 1; n <= row; ++n) {
-                    EXPECT_EQ(problem.tip(moved, n) - problem.tip(moved, 0) > 0, n == row) << result.reason << " at " << n;
+                    EXPECT_EQ(problem.tip(moved, n) - problem.tip(moved, 0) > 0, n == row)
+                        << result.reason << " at " << n;
                 }
             }
         }

@@ -44,7 +44,8 @@ TEST(KnownSet, EveryPatternOfSixCellsEqualsTheLinearProgram) {
         for (const Pattern& pattern : patterns_of(cells)) {
             for (const int gap_sign : {-1, 0, 1}) {
                 const Both sets = both(pattern, gap_sign);
-                SCOPED_TRACE(testing::Message() << cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") gap " << gap_sign);
+                SCOPED_TRACE(testing::Message() << cells << " (" << pattern.free_steps << ", " << pattern.contact_steps
+                                                << ") gap " << gap_sign);
                 ASSERT_EQ(sets.known.status, sets.solved.status) << sets.solved.reason;
                 EXPECT_EQ(sets.known.unbounded(), sets.solved.unbounded());
                 if (sets.known.status == Status::empty) {

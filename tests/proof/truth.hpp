@@ -61,7 +61,8 @@ public:
         if (unbounded && said.energy_bound) return "energy_bound of an unbounded set";
         if (said.energy_bound && *said.energy_bound < *known.energy_attained) return "energy_bound";
         if (said.energy_attained && *said.energy_attained < *known.energy_least) return "energy_attained";
-        if (!unbounded && said.energy_attained && *said.energy_attained > *known.energy_attained) return "energy_attained";
+        if (!unbounded && said.energy_attained && *said.energy_attained > *known.energy_attained)
+            return "energy_attained";
         return "";
     }
 

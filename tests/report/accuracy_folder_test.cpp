@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,9 +108,9 @@ TEST_F(AccuracyFolderTest, TakesTheSameSceneAgainAndNoOther) {
 
 TEST(ParetoFront, KeepsWhatNothingBeats) {
     const std::vector<ProgramRecord> records{
-        program("fast and rough", 8, 1e-5, 1e-3), program("beaten", 8, 1e-2, 1e-3), program("exact", 8, 1e-3, 1e-15),
-        program("as exact within rounding and noise", 8, 1.05e-3, 2e-16), program("exact and slow", 8, 2e-3, 1e-16),
-        program("of another size", 2, 1e-6, 0)};
+        program("fast and rough", 8, 1e-5, 1e-3),  program("beaten", 8, 1e-2, 1e-3),
+        program("exact", 8, 1e-3, 1e-15),          program("as exact within rounding and noise", 8, 1.05e-3, 2e-16),
+        program("exact and slow", 8, 2e-3, 1e-16), program("of another size", 2, 1e-6, 0)};
     std::vector<std::string> names;
     for (const auto* record : nsma::pareto_front(records, 8)) names.push_back(record->method);
     EXPECT_EQ(names, (std::vector<std::string>{"fast and rough", "exact", "as exact within rounding and noise"}));
@@ -120,7 +119,8 @@ TEST(ParetoFront, KeepsWhatNothingBeats) {
 
 TEST(ParetoFront, OfCertifiedAnswersLeavesOutTheOthers) {
     std::vector<ProgramRecord> records{program("fast", 8, 1e-5, 1e-15), program("proved", 8, 1e-3, 1e-15),
-                                       program("proved in part", 8, 1e-4, 1e-15), program("proved slowly", 8, 1e-2, 1e-15)};
+                                       program("proved in part", 8, 1e-4, 1e-15),
+                                       program("proved slowly", 8, 1e-2, 1e-15)};
     records[1].certified = records[3].certified = 3;
     records[2].certified = 2;
     const auto front = nsma::pareto_front(records, 8, true);

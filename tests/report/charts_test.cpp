@@ -4,8 +4,8 @@
 
 #include <gmock/gmock.h>
 
-#include "report/gnuplot.hpp"
 #include "sample.hpp"
+#include "report/gnuplot.hpp"
 
 namespace nsma {
 namespace {
@@ -22,9 +22,7 @@ protected:
         sample::fill(folder, scene);
         (void)folder.finish({});
     }
-    [[nodiscard]] std::string chart(const char* name) const {
-        return sample::read(path / "charts" / name);
-    }
+    [[nodiscard]] std::string chart(const char* name) const { return sample::read(path / "charts" / name); }
 };
 
 TEST_F(ChartsTest, EveryChartHasDataScriptAndPictures) {
@@ -133,9 +131,7 @@ TEST_F(ChartsTest, AFailingGnuplotIsOneLine) {
 TEST_F(ChartsTest, AMissingGnuplotIsOneLine) {
     const std::string before = std::getenv("PATH");
     setenv("PATH", path.c_str(), 1);
-    const std::string message = error_of([this] {
-        draw_chart({"any", "1 2\n", "plot 'any.dat'\n"}, path / "charts");
-    });
+    const std::string message = error_of([this] { draw_chart({"any", "1 2\n", "plot 'any.dat'\n"}, path / "charts"); });
     setenv("PATH", before.c_str(), 1);
     EXPECT_THAT(message, HasSubstr("install gnuplot-nox"));
 }

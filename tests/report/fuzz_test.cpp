@@ -13,8 +13,8 @@
 
 #include "../proof/truth.hpp"
 
-#include "report/certificate_file.hpp"
 #include "nsma/report/scene_file.hpp"
+#include "report/certificate_file.hpp"
 
 namespace {
 
@@ -66,9 +66,28 @@ private:
             default: {  // numbers: the mutation that keeps the syntax
                 const auto [from, size] = number(text, at);
                 if (size == 0) return;
-                static const std::vector<std::string> numbers{
-                    "0", "1", "-1", "2", "3", "-2", "7", "12", "1/2", "-1/3", "4294967296", "2147483647", "-2147483648",
-                    "1000000", "2000000", "1e400", "nan", "inf", "99999999999999999999999999", "0.5", "1e-400", "01"};
+                static const std::vector<std::string> numbers{"0",
+                                                              "1",
+                                                              "-1",
+                                                              "2",
+                                                              "3",
+                                                              "-2",
+                                                              "7",
+                                                              "12",
+                                                              "1/2",
+                                                              "-1/3",
+                                                              "4294967296",
+                                                              "2147483647",
+                                                              "-2147483648",
+                                                              "1000000",
+                                                              "2000000",
+                                                              "1e400",
+                                                              "nan",
+                                                              "inf",
+                                                              "99999999999999999999999999",
+                                                              "0.5",
+                                                              "1e-400",
+                                                              "01"};
                 if (below(2) == 0) {
                     text.replace(from, size, numbers[below(numbers.size())]);
                 } else {

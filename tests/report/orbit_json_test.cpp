@@ -14,8 +14,7 @@ using Json = nlohmann::ordered_json;
 
 std::vector<std::string> keys(const Json& object) {
     std::vector<std::string> names;
-    for (const auto& [key, value] : object.items())
-        names.push_back(key);
+    for (const auto& [key, value] : object.items()) names.push_back(key);
     return names;
 }
 
@@ -70,11 +69,9 @@ TEST(OrbitJson, HasEveryAgreedField) {
     }
     EXPECT_EQ(json.size(), 31U);
     EXPECT_THAT(keys(json["objective"]), testing::ElementsAre("name", "value"));
-    EXPECT_THAT(keys(json["violations"]),
-                testing::ElementsAre("periodicity", "cond1", "cond2", "cond3", "energy"));
-    EXPECT_THAT(keys(json["solvers"][0]),
-                testing::UnorderedElementsAre("name", "start", "status", "objective", "violation",
-                                              "iterations", "seconds"));
+    EXPECT_THAT(keys(json["violations"]), testing::ElementsAre("periodicity", "cond1", "cond2", "cond3", "energy"));
+    EXPECT_THAT(keys(json["solvers"][0]), testing::UnorderedElementsAre("name", "start", "status", "objective",
+                                                                        "violation", "iterations", "seconds"));
     EXPECT_EQ(json["tip_displacement"].size(), 65U);
     EXPECT_EQ(json["contact_force"].size(), 64U);
     EXPECT_EQ(json["alpha"].size(), json["kernel_dimension"].get<std::size_t>());
@@ -123,10 +120,8 @@ TEST(OrbitJson, UnitsAreSiExceptTheDisplacement) {
     const Json si = Json::parse(orbit_json(answer_of(steel), steel));
     // alpha = beta u/dt, force = f Y S u/L; 1e-12: a few roundings.
     const double speed = steel.gap / steel.travel_time();
-    EXPECT_NEAR(si["alpha"][0].get<double>() / (unit["alpha"][0].get<double>() * speed), 1.0,
-                1e-12);
-    EXPECT_NEAR(si["contact_force"][60].get<double>() /
-                    (unit["contact_force"][60].get<double>() * steel.force_unit()),
+    EXPECT_NEAR(si["alpha"][0].get<double>() / (unit["alpha"][0].get<double>() * speed), 1.0, 1e-12);
+    EXPECT_NEAR(si["contact_force"][60].get<double>() / (unit["contact_force"][60].get<double>() * steel.force_unit()),
                 1.0, 1e-12);
     EXPECT_NEAR(si["tip_displacement"][0].get<double>(), 1.0, 1e-12);
     EXPECT_NEAR(si["energy_joule"].get<double>() / (25.0 * steel.energy_unit()), 1.0, 1e-12);

@@ -33,8 +33,7 @@ TEST_P(BadSceneTest, IsRefusedInOneLine) {
     const std::string message = error_of([] { (void)parse_scene(GetParam().text, "a.toml"); });
     EXPECT_THAT(message, testing::StartsWith("a.toml"));
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    for (const char* fragment : GetParam().said)
-        EXPECT_THAT(message, HasSubstr(fragment));
+    for (const char* fragment : GetParam().said) EXPECT_THAT(message, HasSubstr(fragment));
 }
 
 const BadScene bad_scenes[] = {
@@ -46,9 +45,7 @@ const BadScene bad_scenes[] = {
     {"no_title", with("title = \"A sample\"", ""), {"title: expected one line of text", "missing"}},
     {"empty_title", with("A sample", ""), {"a.toml:1: title: expected one line of text, got \"\""}},
     {"title_of_two_lines", with("A sample", "A\\nB"), {"title: expected one line of text"}},
-    {"unknown_key",
-     with("gap = 1.0", "gap = 1.0\ncolour = 3"),
-     {"a.toml:8: bar.colour", "unknown"}},
+    {"unknown_key", with("gap = 1.0", "gap = 1.0\ncolour = 3"), {"a.toml:8: bar.colour", "unknown"}},
     {"table_is_a_number",
      with("[mesh]\ncells = 20", "").insert(0, "mesh = 20\n"),
      {"a.toml:1: mesh: expected a table"}},
@@ -62,31 +59,21 @@ const BadScene bad_scenes[] = {
     {"nan_density", with("density = 1.0", "density = nan"), {"a.toml:5: bar.density", "got nan"}},
     {"infinite_gap", with("gap = 1.0", "gap = -inf"), {"a.toml:7: bar.gap", "got -inf"}},
     {"text_for_number", with("length = 1.0", "length = \"1\""), {"bar.length", "got \"1\""}},
-    {"list_for_number",
-     with("length = 1.0", "length = [1.0]"),
-     {"bar.length", "a list of 1 values"}},
+    {"list_for_number", with("length = 1.0", "length = [1.0]"), {"bar.length", "a list of 1 values"}},
     {"true_for_number", with("length = 1.0", "length = true"), {"bar.length", "got true"}},
     {"underflow", with("gap = 1.0", "gap = 1e-200"), {"a.toml:2: bar: expected", "energy_unit"}},
-    {"no_cells",
-     with("cells = 20", "cells = 0"),
-     {"a.toml:9: mesh.cells: expected an integer", "got 0"}},
+    {"no_cells", with("cells = 20", "cells = 0"), {"a.toml:9: mesh.cells: expected an integer", "got 0"}},
     {"half_cells", with("cells = 20", "cells = 2.5"), {"mesh.cells", "an integer", "got 2.5"}},
     {"too_many_cells", with("cells = 20", "cells = 1000001"), {"mesh.cells", "1000000"}},
     {"mode_zero", with_patterns("mode = 0"), {"a.toml:11: patterns.mode", "got 0"}},
     {"no_patterns", with_patterns(""), {"a.toml:10: patterns: expected exactly one of", "none"}},
     {"two_patterns", with_patterns("mode = 1\nperiod = [0, 4]"), {"exactly one of", "2 of them"}},
-    {"period_reversed",
-     with_patterns("period = [4.0, 1.0]"),
-     {"a.toml:11: patterns.period", "[4, 1]"}},
+    {"period_reversed", with_patterns("period = [4.0, 1.0]"), {"a.toml:11: patterns.period", "[4, 1]"}},
     {"period_negative", with_patterns("period = [-1.0, 1.0]"), {"patterns.period", "got -1"}},
-    {"period_of_three",
-     with_patterns("period = [1, 2, 3]"),
-     {"patterns.period", "a list of 3 values"}},
+    {"period_of_three", with_patterns("period = [1, 2, 3]"), {"patterns.period", "a list of 3 values"}},
     {"period_huge", with_patterns("period = [0, 1e9]"), {"patterns.period", "100000000"}},
     {"contact_alone", with_patterns("mode = 1\ncontact = [0, 1]"), {"patterns.contact"}},
-    {"contact_reversed",
-     with_patterns("period = [0, 4]\ncontact = [2, 1]"),
-     {"patterns.contact", "[2, 1]"}},
+    {"contact_reversed", with_patterns("period = [0, 4]\ncontact = [2, 1]"), {"patterns.contact", "[2, 1]"}},
     {"list_empty", with_patterns("list = []"), {"patterns.list", "a list of 0 values"}},
     {"list_of_numbers", with_patterns("list = [3, 4]"), {"patterns.list", "got 3"}},
     {"list_row_of_one", with_patterns("list = [[3]]"), {"patterns.list", "two positive integers"}},
@@ -98,12 +85,8 @@ const BadScene bad_scenes[] = {
     {"levels_empty", with_levels("list = []"), {"levels.list", "a list of 0 values"}},
     {"levels_negative", with_levels("list = [2.0, -3.0]"), {"levels.list", "> 0, got -3"}},
     {"levels_nan", with_levels("list = [nan]"), {"levels.list", "got nan"}},
-    {"levels_no_spacing",
-     with_levels("from = 1\nto = 2\ncount = 3"),
-     {"levels.spacing", "missing"}},
-    {"levels_no_to",
-     with_levels("from = 1\ncount = 3\nspacing = \"log\""),
-     {"levels.to", "missing"}},
+    {"levels_no_spacing", with_levels("from = 1\nto = 2\ncount = 3"), {"levels.spacing", "missing"}},
+    {"levels_no_to", with_levels("from = 1\ncount = 3\nspacing = \"log\""), {"levels.to", "missing"}},
     {"levels_count_0",
      with_levels("from = 1\nto = 2\ncount = 0\nspacing = \"log\""),
      {"a.toml:15: levels.count", "got 0"}},
@@ -116,9 +99,7 @@ const BadScene bad_scenes[] = {
     {"levels_reversed",
      with_levels("from = 3\nto = 2\ncount = 3\nspacing = \"log\""),
      {"levels.to: expected a number >= levels.from = 3, got 2"}},
-    {"levels_from_zero",
-     with_levels("from = 0\nto = 2\ncount = 3\nspacing = \"log\""),
-     {"levels.from", "> 0, got 0"}},
+    {"levels_from_zero", with_levels("from = 0\nto = 2\ncount = 3\nspacing = \"log\""), {"levels.from", "> 0, got 0"}},
     {"spacing_unknown",
      with_levels("from = 1\nto = 2\ncount = 3\nspacing = \"cubic\""),
      {"a.toml:16: levels.spacing", "got \"cubic\""}},
@@ -144,25 +125,21 @@ TEST(SceneFile, ReadsTheSample) {
 TEST(SceneFile, TakesIntegersForNumbersAndInlineTables) {
     const Scene scene = parse_scene(with("length = 1.0", "length = 2"), "sample");
     EXPECT_EQ(scene.bar.length, 2.0);
-    const Scene period =
-        parse_scene(with_patterns("period = [0, 4]\ncontact = [0.5, 1]"), "sample");
+    const Scene period = parse_scene(with_patterns("period = [0, 4]\ncontact = [0.5, 1]"), "sample");
     EXPECT_EQ(std::get<PeriodSelection>(period.patterns).contact->at(1), 1.0);
     const Scene list = parse_scene(with_patterns("list = [[48, 16], [3, 4]]"), "sample");
     EXPECT_EQ(std::get<ListSelection>(list.patterns).steps.front(), std::pair(48, 16));
 }
 
 TEST(SceneFile, LevelsKeepTheirEndsExactly) {
-    const Scene scene = parse_scene(
-        with_levels("from = 1.05\nto = 100.1\ncount = 12\nspacing = \"log\""), "sample");
+    const Scene scene = parse_scene(with_levels("from = 1.05\nto = 100.1\ncount = 12\nspacing = \"log\""), "sample");
     ASSERT_EQ(scene.levels.size(), 12U);
     EXPECT_EQ(scene.levels.front(), 1.05);
     EXPECT_EQ(scene.levels.back(), 100.1);
     EXPECT_TRUE(std::is_sorted(scene.levels.begin(), scene.levels.end()));
-    const Scene linear =
-        parse_scene(with_levels("from = 1\nto = 3\ncount = 3\nspacing = \"linear\""), "sample");
+    const Scene linear = parse_scene(with_levels("from = 1\nto = 3\ncount = 3\nspacing = \"linear\""), "sample");
     EXPECT_EQ(linear.levels, (std::vector<double>{1.0, 2.0, 3.0}));
-    const Scene one =
-        parse_scene(with_levels("from = 2\nto = 2\ncount = 1\nspacing = \"log\""), "sample");
+    const Scene one = parse_scene(with_levels("from = 2\nto = 2\ncount = 1\nspacing = \"log\""), "sample");
     EXPECT_EQ(one.levels, (std::vector<double>{2.0}));
 }
 

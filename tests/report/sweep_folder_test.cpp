@@ -23,9 +23,7 @@ protected:
         summary.interrupted = interrupted;
         return folder.finish(summary);
     }
-    [[nodiscard]] std::string file(const char* name) const {
-        return sample::read(path / "out" / name);
-    }
+    [[nodiscard]] std::string file(const char* name) const { return sample::read(path / "out" / name); }
 };
 
 TEST_F(SweepFolderTest, FilesTakeTheirNamesAtTheEnd) {
@@ -51,8 +49,7 @@ TEST_F(SweepFolderTest, ReadsBackWhatWasWritten) {
     ASSERT_EQ(stored.levels.size(), 19U);
     ASSERT_EQ(stored.orbits.size(), 19U);
     for (std::size_t i = 0; i < stored.orbits.size(); ++i) {
-        const OrbitAnswer answer =
-            sample::least_energy_answer(scene.bar, stored.patterns[i].pattern);
+        const OrbitAnswer answer = sample::least_energy_answer(scene.bar, stored.patterns[i].pattern);
         EXPECT_EQ(stored.patterns[i].interval.least, answer.interval.least);
         EXPECT_EQ(stored.patterns[i].verdict, Verdict::admissible);
         EXPECT_EQ(stored.levels[i].energy, answer.energy);
@@ -64,8 +61,7 @@ TEST_F(SweepFolderTest, ReadsBackWhatWasWritten) {
 
 TEST_F(SweepFolderTest, TwoRunsOfOneSceneAreTheSame) {
     (void)sweep();
-    const std::string patterns = file("patterns.csv"), levels = file("levels.csv"),
-                      orbits = file("orbits.jsonl");
+    const std::string patterns = file("patterns.csv"), levels = file("levels.csv"), orbits = file("orbits.jsonl");
     (void)sweep();
     EXPECT_EQ(file("patterns.csv"), patterns);
     EXPECT_EQ(file("levels.csv"), levels);
@@ -103,10 +99,8 @@ TEST_F(SweepFolderTest, AnInterruptedSweepLeavesWhatItHas) {
 TEST_F(SweepFolderTest, ThingsInTheWayAreNamed) {
     sample::write(path / "file", "text");
     EXPECT_THAT(error_of([this] { SweepFolder(path / "file", scene); }), HasSubstr("got a file"));
-    EXPECT_THAT(error_of([this] { SweepFolder(path / "file" / "out", scene); }),
-                HasSubstr("file/out"));
-    EXPECT_THAT(error_of([this] { SweepFolder("/proc/nsma", scene); }),
-                HasSubstr("/proc/nsma: cannot be"));
+    EXPECT_THAT(error_of([this] { SweepFolder(path / "file" / "out", scene); }), HasSubstr("file/out"));
+    EXPECT_THAT(error_of([this] { SweepFolder("/proc/nsma", scene); }), HasSubstr("/proc/nsma: cannot be"));
     std::filesystem::create_directory(path / "old");
     sample::write(path / "old" / "levels.csv", "text");
     EXPECT_THAT(error_of([this] { SweepFolder(path / "old", scene); }), HasSubstr("is in the way"));
@@ -129,9 +123,7 @@ TEST_F(SweepFolderTest, ASceneMadeInCodeIsMisuse) {
 }
 
 TEST_F(SweepFolderTest, DamagedFoldersAreNamed) {
-    const auto message = [this] {
-        return error_of([this] { (void)read_sweep_folder(path / "out"); });
-    };
+    const auto message = [this] { return error_of([this] { (void)read_sweep_folder(path / "out"); }); };
     EXPECT_THAT(message(), HasSubstr("got nothing"));
     (void)sweep();
     std::filesystem::rename(path / "out" / "levels.csv", path / "levels.csv");

@@ -7,8 +7,8 @@
 #include <sys/resource.h>
 
 #include "../study/run_sweep.hpp"
-#include "study/sweep/sweep_queue.hpp"
 #include "sample.hpp"
+#include "study/sweep/sweep_queue.hpp"
 
 namespace nsma {
 namespace {
@@ -196,7 +196,8 @@ TEST_F(SweepStoreTest, NoRoomLeftIsOneLineAndTheStoreStaysValid) {
     {
         SweepStore store(path / "out", scene, versions, Mode::fresh);
         (void)work(store, 3);
-        const SizeLimit limit(static_cast<rlim_t>(std::filesystem::file_size(path / "out" / "results.sqlite.part-wal")));
+        const SizeLimit limit(
+            static_cast<rlim_t>(std::filesystem::file_size(path / "out" / "results.sqlite.part-wal")));
         const std::string message = error_of([&] { (void)work(store); });
         EXPECT_THAT(message, HasSubstr("results.sqlite.part: cannot be written: "));
         EXPECT_EQ(message.find('\n'), std::string::npos);

@@ -7,8 +7,8 @@
 
 #include <gmock/gmock.h>
 
-#include "report/csv.hpp"
 #include "sample.hpp"
+#include "report/csv.hpp"
 
 namespace nsma {
 namespace {
@@ -67,8 +67,7 @@ TEST(Tables, EveryRowHasAsManyFieldsAsItsHeader) {
     EXPECT_EQ(csv_fields(row)[10], "a, b \"c\" d");
     const auto timings = timings_csv_rows(answer);
     ASSERT_EQ(timings.size(), 3U);
-    for (const std::string& line : timings)
-        EXPECT_EQ(fields(line), fields(timings_csv_header()));
+    for (const std::string& line : timings) EXPECT_EQ(fields(line), fields(timings_csv_header()));
     OrbitAnswer below;
     below.verdict = Verdict::below;
     below.pattern = {20, 48, 16};
@@ -115,8 +114,8 @@ TEST(Tables, SummaryNamesEveryCount) {
     SweepSummary summary;
     summary.worst_violation = 1.25e-15;
     const std::string table = summary_table(summary);
-    for (const char* word : {"patterns", "trivial", "inadmissible", "admissible", "solved", "agree",
-                             "different optima", "failed", "1.25e-15", "time [s]"}) {
+    for (const char* word : {"patterns", "trivial", "inadmissible", "admissible", "solved", "agree", "different optima",
+                             "failed", "1.25e-15", "time [s]"}) {
         EXPECT_THAT(table, testing::HasSubstr(word));
     }
     summary.interrupted = true;
@@ -128,14 +127,12 @@ TEST(ReferenceTables, BackbonesEqualTheClosedFormOfTheProgram) {
     CsvTable table(std::filesystem::path(NSMA_DATA) / "mode-backbones.csv");
     int rows = 0;
     for (; table.next(); ++rows) {
-        const Pattern pattern{table.integer("cells"), table.integer("free_steps"),
-                              table.integer("contact_steps")};
+        const Pattern pattern{table.integer("cells"), table.integer("free_steps"), table.integer("contact_steps")};
         EXPECT_EQ(pattern.period_steps(), table.integer("period_steps"));
         EXPECT_EQ(mode_of(pattern), table.integer("mode"));
         const double energy = *table.number("energy_ratio");
         // 1e-12: the denominator k^2 T/tau - (2k+1) loses up to 120 units of rounding.
-        EXPECT_NEAR(backbone_energy_ratio(table.integer("mode"), pattern.period_ratio()) / energy,
-                    1.0, 1e-12);
+        EXPECT_NEAR(backbone_energy_ratio(table.integer("mode"), pattern.period_ratio()) / energy, 1.0, 1e-12);
     }
     EXPECT_GT(rows, 300);
 }

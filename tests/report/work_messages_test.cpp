@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "nsma/report/orbit_json.hpp"
-#include "report/sweep/tables.hpp"
 #include "study/sweep/record_rows.hpp"
 #include "study/sweep/sweep_queue.hpp"
+#include "nsma/report/orbit_json.hpp"
+#include "report/sweep/tables.hpp"
 
 namespace nsma {
 namespace {
@@ -69,7 +69,8 @@ TEST(WorkMessages, NoValueIsNotZero) {
     answer.solvers.emplace_back();
     answer.solvers[0].objective = std::numeric_limits<double>::quiet_NaN();
     answer.optimality.emplace();  // without a bound
-    const OrbitAnswer back = *unpacked_results(packed(std::vector{WorkResult{7, 2, std::nullopt, answer}}), Bar{}).at(0).answer;
+    const OrbitAnswer back =
+        *unpacked_results(packed(std::vector{WorkResult{7, 2, std::nullopt, answer}}), Bar{}).at(0).answer;
     EXPECT_TRUE(std::isnan(back.solvers.at(0).objective));
     ASSERT_TRUE(back.optimality.has_value());
     EXPECT_FALSE(back.optimality->lower_bound.has_value());

@@ -128,9 +128,12 @@ TEST(Edges, LevelsBesideTheEndsOfPatternsWithFreeVariables) {
                 const auto problem = pattern_problem(pattern, gap_sign);
                 if (problem.verdict != Verdict::admissible) continue;
                 ++tried;
-                SCOPED_TRACE(testing::Message() << "(" << cells << ", " << pattern.free_steps << ", " << pattern.contact_steps << ") gap " << gap_sign);
+                SCOPED_TRACE(testing::Message() << "(" << cells << ", " << pattern.free_steps << ", "
+                                                << pattern.contact_steps << ") gap " << gap_sign);
                 const Bar bar = bar_with_gap(gap_sign);
-                const auto at = [&](double level) { return solver.solve(bar, problem, {.level = level, .reference = {}}); };
+                const auto at = [&](double level) {
+                    return solver.solve(bar, problem, {.level = level, .reference = {}});
+                };
                 const auto& interval = problem.interval;
                 ASSERT_TRUE(problem.proof.exact_greatest());
                 for (const int k : {1, 6, 12}) {
@@ -164,7 +167,8 @@ TEST(Edges, AVanishingGapDecidesByItsSign) {
                 const Bar bar = bar_with_gap(sign * size);
                 ASSERT_EQ(bar.gap_sign(), sign);
                 for (const double factor : {0.999, 1.0}) {
-                    const auto unit = solver.solve(bar_with_gap(sign), problem, {.level = factor * level, .reference = {}});
+                    const auto unit =
+                        solver.solve(bar_with_gap(sign), problem, {.level = factor * level, .reference = {}});
                     const auto tiny = solver.solve(bar, problem, {.level = factor * level, .reference = {}});
                     EXPECT_EQ(tiny.verdict, unit.verdict);
                     EXPECT_EQ(tiny.verdict_proved, unit.verdict_proved);
@@ -217,12 +221,15 @@ TEST(Edges, TheSmallestMeshes) {
             for (int contact = 1; contact < period; ++contact) {
                 const Pattern pattern{cells, period - contact, contact};
                 for (const int gap_sign : {-1, 0, 1}) {
-                    SCOPED_TRACE(testing::Message() << "(" << cells << ", " << period - contact << ", " << contact << ") gap " << gap_sign);
+                    SCOPED_TRACE(testing::Message() << "(" << cells << ", " << period - contact << ", " << contact
+                                                    << ") gap " << gap_sign);
                     const auto problem = pattern_problem(pattern, gap_sign);
                     EXPECT_TRUE(problem.proof.verdict_proved) << problem.proof.unproved;
                     ASSERT_NE(problem.verdict, Verdict::failed);
                     const Bar bar = bar_with_gap(gap_sign);
-                    const auto at = [&](double level) { return solver.solve(bar, problem, {.level = level, .reference = {}}); };
+                    const auto at = [&](double level) {
+                        return solver.solve(bar, problem, {.level = level, .reference = {}});
+                    };
                     if (problem.verdict != Verdict::admissible) {
                         EXPECT_EQ(at(1.0).verdict, problem.verdict);
                         EXPECT_TRUE(at(1.0).verdict_proved);
@@ -266,7 +273,8 @@ TEST(Edges, OneFreeStepOneContactStepAndShortPeriods) {
     }
     for (const Pattern& pattern : patterns) {
         for (const int gap_sign : {-1, 1}) {
-            SCOPED_TRACE(testing::Message() << "(" << pattern.free_steps << ", " << pattern.contact_steps << ") gap " << gap_sign);
+            SCOPED_TRACE(testing::Message()
+                         << "(" << pattern.free_steps << ", " << pattern.contact_steps << ") gap " << gap_sign);
             const auto problem = pattern_problem(pattern, gap_sign);
             EXPECT_TRUE(problem.proof.verdict_proved) << problem.proof.unproved;
             ASSERT_NE(problem.verdict, Verdict::failed) << problem.set.reason;
@@ -277,8 +285,10 @@ TEST(Edges, OneFreeStepOneContactStepAndShortPeriods) {
             const auto& interval = problem.interval;
             const Bar bar = bar_with_gap(gap_sign);
             expect_on_level(solver.solve(bar, problem, {.level = *interval.least, .reference = {}}));
-            if (interval.greatest) expect_on_level(solver.solve(bar, problem, {.level = *interval.greatest, .reference = {}}));
-            expect_outside(solver.solve(bar, problem, {.level = 0.5 * *interval.least, .reference = {}}), Verdict::below);
+            if (interval.greatest)
+                expect_on_level(solver.solve(bar, problem, {.level = *interval.greatest, .reference = {}}));
+            expect_outside(solver.solve(bar, problem, {.level = 0.5 * *interval.least, .reference = {}}),
+                           Verdict::below);
         }
     }
     EXPECT_GT(admissible, 10);
@@ -296,7 +306,8 @@ TEST(Edges, PatternsWhoseClassesAreAllDead) {
             EXPECT_TRUE(problem.proof.verdict_proved);
             EXPECT_TRUE(nsma::check(problem.proof.certificate).valid);
             for (const double level : {1e-12, 1.0, 1e12}) {
-                expect_outside(solver.solve(bar_with_gap(gap_sign), problem, {.level = level, .reference = {}}), Verdict::trivial);
+                expect_outside(solver.solve(bar_with_gap(gap_sign), problem, {.level = level, .reference = {}}),
+                               Verdict::trivial);
             }
         }
     }

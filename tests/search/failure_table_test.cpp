@@ -20,11 +20,11 @@
 
 #include "../numerics/textbook.hpp"
 
-#include "set/level_points.hpp"
-#include "search/orbit_program.hpp"
-#include "nsma/search/orbit_solver.hpp"
-#include "numerics/solver.hpp"
 #include "numerics/polish.hpp"
+#include "numerics/solver.hpp"
+#include "set/level_points.hpp"
+#include "nsma/search/orbit_solver.hpp"
+#include "search/orbit_program.hpp"
 #include "search/restore.hpp"
 
 extern char** environ;  // NOLINT: the name POSIX gives it
@@ -53,8 +53,7 @@ using testing::HasSubstr;
 const Vector3d start(0.48, 0.6, 0.64);  // on the unit sphere
 const auto all_methods = {NloptMethod::slsqp, NloptMethod::auglag_lbfgs, NloptMethod::cobyla};
 
-OrbitAnswer solve(const Pattern& pattern, double gap, const OrbitRequest& request,
-                  OrbitSolverOptions options = {}) {
+OrbitAnswer solve(const Pattern& pattern, double gap, const OrbitRequest& request, OrbitSolverOptions options = {}) {
     nsma::Bar bar;
     bar.gap = gap;
     return OrbitSolver(options).solve(bar, pattern_problem(pattern, bar.gap_sign()), request);
@@ -97,7 +96,9 @@ struct Child {
 /// Runs solver_child with one argument; after `limit` seconds it is killed, by its own id.
 Child run_child(const std::string& name, double limit) {
     const auto begin = std::chrono::steady_clock::now();
-    const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+    const auto elapsed = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
     int ends[2];
     EXPECT_EQ(pipe(ends), 0);
     posix_spawn_file_actions_t actions;
@@ -127,7 +128,8 @@ Child run_child(const std::string& name, double limit) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     char buffer[512];
-    for (ssize_t got = 0; (got = read(ends[0], buffer, sizeof buffer)) > 0;) result.out.append(buffer, static_cast<std::size_t>(got));
+    for (ssize_t got = 0; (got = read(ends[0], buffer, sizeof buffer)) > 0;)
+        result.out.append(buffer, static_cast<std::size_t>(got));
     close(ends[0]);
     result.seconds = elapsed();
     return result;
@@ -206,9 +208,11 @@ TEST(FailureTable, Row05SlsqpWithTheEnergyAsObjective) {
         }
         // Asked all the same, its word is not taken: what it holds is restored and polished to the least energy.
         const auto problem = pattern_problem(pattern, 1);
-        const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::min_energy, std::nullopt, *interval.least);
+        const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::min_energy,
+                                                 std::nullopt, *interval.least);
         for (const auto& vertex : problem.set.vertices) {
-            const auto outcome = nsma::solve_with_nlopt(nsma::NloptMethod::slsqp, program.program, program.point(vertex), {});
+            const auto outcome =
+                nsma::solve_with_nlopt(nsma::NloptMethod::slsqp, program.program, program.point(vertex), {});
             ASSERT_GT(outcome.iterations, 0) << outcome.status;
             const auto near = nsma::restored(program, problem.set, nullptr, outcome.x);
             ASSERT_TRUE(near);
@@ -223,8 +227,8 @@ TEST(FailureTable, Row06NeverStartsAtRest) {
     for (const Pattern& pattern : {Pattern{6, 16, 4}, {6, 23, 1}, {20, 48, 16}}) {
         const auto problem = pattern_problem(pattern, 1);
         const double level = 1.7 * *problem.interval.least;
-        const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock,
-                                                 level, *problem.interval.least);
+        const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, level,
+                                                 *problem.interval.least);
         const nsma::LevelPoints points(problem.set, level);
         for (int k = 0; k < 20; ++k) {
             const auto begin = points.start(k);
@@ -336,7 +340,8 @@ TEST(FailureTable, Row12IpoptFromThreads) {
         std::ifstream stream(entry.path());
         std::stringstream text;
         text << stream.rdbuf();
-        for (const char* word : {"std::thread", "std::jthread", "std::async", "pthread_create", "#pragma omp", "execution::par"}) {
+        for (const char* word :
+             {"std::thread", "std::jthread", "std::async", "pthread_create", "#pragma omp", "execution::par"}) {
             EXPECT_EQ(text.str().find(word), std::string::npos) << entry.path() << ": " << word;
         }
         ++files;
@@ -346,7 +351,9 @@ TEST(FailureTable, Row12IpoptFromThreads) {
 
 TEST(FailureTable, Row13NloptFromThreads) {
     const auto items = textbook::all();
-    const auto answer = [&](std::size_t i) { return solve_with_nlopt(NloptMethod::slsqp, items[i % items.size()].program, start).x; };
+    const auto answer = [&](std::size_t i) {
+        return solve_with_nlopt(NloptMethod::slsqp, items[i % items.size()].program, start).x;
+    };
     std::vector<VectorXd> serial(16);
     std::vector<VectorXd> parallel(16);
     for (std::size_t i = 0; i < serial.size(); ++i) serial[i] = answer(i);
@@ -377,7 +384,8 @@ TEST(FailureTable, Row14AnOptionFileInTheWorkingDirectory) {
     expect_sound(here);
     EXPECT_EQ(plain.orbit->beta, here.orbit->beta);
     ASSERT_EQ(plain.solvers.size(), here.solvers.size());
-    for (std::size_t i = 0; i < plain.solvers.size(); ++i) EXPECT_EQ(plain.solvers[i].iterations, here.solvers[i].iterations);
+    for (std::size_t i = 0; i < plain.solvers.size(); ++i)
+        EXPECT_EQ(plain.solvers[i].iterations, here.solvers[i].iterations);
 }
 
 TEST(FailureTable, Row15StatusesWithoutAPoint) {
@@ -436,9 +444,10 @@ TEST(FailureTable, Row18ActiveInequalities) {
     const auto raw = IpoptSolver().solve(item.program, start);
     const auto polished = nsma::polish(item.program, raw.x);
     EXPECT_TRUE(polished.feasible);
-    EXPECT_LE(item.program.violation(polished.x), 1e-12);  // of the polish
+    EXPECT_LE(item.program.violation(polished.x), 1e-12);                                  // of the polish
     EXPECT_NEAR(polished.multipliers.inequality[0], 4 - 3 * 0.5 / std::sqrt(0.75), 1e-9);  // derived at the case
-    for (const double factor : {1.5, 4.0}) expect_sound(solve({6, 23, 1}, 1, {.level = factor * 12.0 / 11.0, .reference = {}}));
+    for (const double factor : {1.5, 4.0})
+        expect_sound(solve({6, 23, 1}, 1, {.level = factor * 12.0 / 11.0, .reference = {}}));
 }
 
 TEST(FailureTable, Row19MultipliersOfFixedVariables) {

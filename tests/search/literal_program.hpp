@@ -32,7 +32,10 @@ struct Moved {
 class Program {
 public:
     Program(const Pattern& pattern, int gap_sign, Objective objective, const VectorXd& reference)
-        : problem_(literal::problem(pattern, gap_sign)), objective_(objective), reference_(reference), m_(problem_.dimension) {
+        : problem_(literal::problem(pattern, gap_sign)),
+          objective_(objective),
+          reference_(reference),
+          m_(problem_.dimension) {
         const int window = 2 * pattern.cells;
         tips_ = MatrixXd::Zero(problem_.period + 1, m_);
         for (int n = 0; n <= problem_.period; ++n) {
@@ -79,7 +82,8 @@ public:
             const auto extra = moved.flight.find(step);
             // Rows equal to COND2's belong to it.
             if ((tips_.row(step) - tips_.row(0)).isZero(1e-9)) continue;
-            inequality(tips_.row(step), problem_.gap_sign + moved.gap + (extra == moved.flight.end() ? 0.0 : extra->second));
+            inequality(tips_.row(step),
+                       problem_.gap_sign + moved.gap + (extra == moved.flight.end() ? 0.0 : extra->second));
         }
         for (int step = pattern.free_steps; step < problem_.period; ++step) {
             const auto extra = moved.force.find(step);
@@ -118,7 +122,8 @@ public:
             default: break;
         }
         double peak = 0;
-        for (int n = problem_.pattern.free_steps; n < problem_.period; ++n) peak = std::max(peak, std::abs(wave(n).dot(beta)));
+        for (int n = problem_.pattern.free_steps; n < problem_.period; ++n)
+            peak = std::max(peak, std::abs(wave(n).dot(beta)));
         return 2.0 * problem_.pattern.cells * peak;
     }
 
@@ -172,7 +177,8 @@ private:
                 slope = row.row.transpose();
                 return row.row.dot(y) - row.limit / scale;
             }});
-            (row.equality ? nlopt_add_equality_constraint : nlopt_add_inequality_constraint)(opt, Context::run, &linear.back(), 1e-13);
+            (row.equality ? nlopt_add_equality_constraint : nlopt_add_inequality_constraint)(opt, Context::run,
+                                                                                             &linear.back(), 1e-13);
         }
         nlopt_set_xtol_rel(opt, 1e-15);
         nlopt_set_ftol_rel(opt, 1e-15);
@@ -198,7 +204,8 @@ private:
             }
             MatrixXd system(static_cast<Eigen::Index>(normals.size()), n);
             for (std::size_t i = 0; i < normals.size(); ++i) system.row(static_cast<Eigen::Index>(i)) = normals[i];
-            y += system.completeOrthogonalDecomposition().solve(Eigen::Map<const VectorXd>(defects.data(), system.rows()));
+            y += system.completeOrthogonalDecomposition().solve(
+                Eigen::Map<const VectorXd>(defects.data(), system.rows()));
         }
         VectorXd none = VectorXd::Zero(n);
         double off = std::abs(sphere.call(y, none));
@@ -220,15 +227,17 @@ private:
     double offset_ = 0;
 };
 
-// Every order of the values of an optimum up to five amplitudes, else its shifts among the columns and their reversals; then
-// fixed mixtures of those. Signs stay with the columns.
+// Every order of the values of an optimum up to five amplitudes, else its shifts among the columns and their reversals;
+// then fixed mixtures of those. Signs stay with the columns.
 inline std::vector<VectorXd> starts_from(const VectorXd& beta, const VectorXd& signs) {
     const VectorXd sizes = beta.cwiseProduct(signs);
     std::vector<double> order(sizes.begin(), sizes.end());
     std::vector<VectorXd> starts{beta};
     const auto keep = [&](const std::vector<double>& values) {
         const VectorXd start = Eigen::Map<const VectorXd>(values.data(), beta.size()).cwiseProduct(signs);
-        const bool known = std::any_of(starts.begin(), starts.end(), [&](const VectorXd& other) { return (other - start).norm() < 1e-9 * beta.norm(); });
+        const bool known = std::any_of(starts.begin(), starts.end(), [&](const VectorXd& other) {
+            return (other - start).norm() < 1e-9 * beta.norm();
+        });
         if (!known) starts.push_back(start);
     };
     if (beta.size() <= 4) {
@@ -248,7 +257,8 @@ inline std::vector<VectorXd> starts_from(const VectorXd& beta, const VectorXd& s
     const std::size_t copies = starts.size();
     for (int k = 0; k < 3 && copies > 1; ++k) {
         VectorXd mixture = VectorXd::Zero(beta.size());
-        for (std::size_t i = 0; i < copies; ++i) mixture += (0.1 + static_cast<double>(random() >> 11) * 0x1p-53) * starts[i];
+        for (std::size_t i = 0; i < copies; ++i)
+            mixture += (0.1 + static_cast<double>(random() >> 11) * 0x1p-53) * starts[i];
         starts.push_back(beta.norm() * mixture.normalized());
     }
     return starts;

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "set/level_points.hpp"
-#include "search/orbit_program.hpp"
-#include "nsma/search/orbit_solver.hpp"
 #include "numerics/polish.hpp"
+#include "set/level_points.hpp"
+#include "nsma/search/orbit_solver.hpp"
+#include "search/orbit_program.hpp"
 
 namespace {
 
@@ -44,11 +44,12 @@ TEST_P(LocalOptima, AreFoundAndSettled) {
     std::sort(ends.begin(), ends.end());
 
     nsma::OrbitSolver solver;
-    const auto answer = solver.solve(nsma::Bar{}, problem, {.level = energy, .objective = Objective::nearest, .reference = reference});
+    const auto answer =
+        solver.solve(nsma::Bar{}, problem, {.level = energy, .objective = Objective::nearest, .reference = reference});
     ASSERT_EQ(answer.verdict, nsma::Verdict::admissible) << answer.reason;
     EXPECT_LE(nsma::replay(*answer.orbit, energy).violations.worst(), 1e-9);  // the acceptance of the project
-    EXPECT_LE(*answer.objective_value, ends.front() * (1 + 1e-6));  // agreement tolerance
-    EXPECT_GT(ends.back(), 1.01 * *answer.objective_value);         // another optimum, by more than rounding
+    EXPECT_LE(*answer.objective_value, ends.front() * (1 + 1e-6));            // agreement tolerance
+    EXPECT_GT(ends.back(), 1.01 * *answer.objective_value);                   // another optimum, by more than rounding
     ASSERT_TRUE(answer.optimality && answer.optimality->lower_bound);
     EXPECT_LE(*answer.optimality->lower_bound, ends.front() * (1 + 1e-9));  // a bound is below every point
     EXPECT_TRUE(answer.optimality->global);
@@ -56,12 +57,15 @@ TEST_P(LocalOptima, AreFoundAndSettled) {
     // Both solvers come to the best of them, asked from aside of it where their own starts end elsewhere.
     nsma::OrbitSolverOptions both;
     both.solvers = nsma::SolverChoice::both;
-    const auto crossed = nsma::OrbitSolver(both).solve(nsma::Bar{}, problem, {.level = energy, .objective = Objective::nearest, .reference = reference});
+    const auto crossed = nsma::OrbitSolver(both).solve(
+        nsma::Bar{}, problem, {.level = energy, .objective = Objective::nearest, .reference = reference});
     EXPECT_EQ(crossed.agreement, nsma::Agreement::agree) << crossed.reason;
-    EXPECT_NEAR(*crossed.objective_value, *answer.objective_value, 1e-12 * *answer.objective_value);  // the same formula
+    EXPECT_NEAR(*crossed.objective_value, *answer.objective_value,
+                1e-12 * *answer.objective_value);  // the same formula
 }
 
-// Above half the greatest energy the sphere cuts the simplex into a piece for each vertex, each with an optimum of its own.
+// Above half the greatest energy the sphere cuts the simplex into a piece for each vertex, each with an optimum of its
+// own.
 INSTANTIATE_TEST_SUITE_P(Levels, LocalOptima,
                          testing::Values(Case{{6, 16, 4}, 30.0}, Case{{12, 31, 9}, 60.0}, Case{{12, 32, 8}, 60.0},
                                          Case{{24, 64, 16}, 100.0}));

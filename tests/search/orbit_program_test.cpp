@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "nsma/orbit/orbit.hpp"
 #include "wave/wave_queue.hpp"
+#include "nsma/orbit/orbit.hpp"
 
 namespace {
 
@@ -117,8 +117,7 @@ TEST(OrbitProgram, ProgramValueIsTheObjectiveOfTheWaves) {
                                           Objective::min_energy, Objective::max_energy}) {
             const bool extreme = objective == Objective::min_energy || objective == Objective::max_energy;
             const double level = 3.7;
-            const VectorXd reference =
-                nsma::wave_basis(kernel) * reduction.beta(random_gamma(reduction, random));
+            const VectorXd reference = nsma::wave_basis(kernel) * reduction.beta(random_gamma(reduction, random));
             const auto program = orbit_program(reduction, kernel, objective,
                                                extreme ? std::nullopt : std::optional(level), level, reference);
             ASSERT_NO_THROW(validate(program.program));
@@ -127,8 +126,7 @@ TEST(OrbitProgram, ProgramValueIsTheObjectiveOfTheWaves) {
                 gamma *= std::sqrt(level / (reduction.energy_factor * gamma.squaredNorm()));
                 const VectorXd x = program.point(gamma);
                 EXPECT_LT((program.gamma(x) - gamma).norm(), rounding * gamma.norm());
-                const double value =
-                    objective_of_waves(kernel, objective, reduction.beta(gamma), reference);
+                const double value = objective_of_waves(kernel, objective, reduction.beta(gamma), reference);
                 EXPECT_NEAR(program.objective_unit * program.program.objective(x), value, rounding * (1 + value));
                 // A point at the level is on the unit sphere, where there is one.
                 EXPECT_NEAR(program.program.sphere_residual(x), 0, rounding);
@@ -150,9 +148,9 @@ TEST(OrbitProgram, ConstraintsAreTheConditionsOfTheTip) {
             const VectorXd x = program.point(gamma);
             const double contact_norm = reduction.contact_row.cast<double>().norm();
             if (contact_norm > 0) {
-                const double defect =
-                    (program.program.equalities * x - program.program.equality_values)[0];
-                EXPECT_NEAR(defect * contact_norm * program.scale, tip[0] - gap_sign, rounding * (1 + std::abs(tip[0])));
+                const double defect = (program.program.equalities * x - program.program.equality_values)[0];
+                EXPECT_NEAR(defect * contact_norm * program.scale, tip[0] - gap_sign,
+                            rounding * (1 + std::abs(tip[0])));
             }
             const VectorXd rows = program.program.inequalities * x - program.program.inequality_values;
             ASSERT_EQ(rows.size(), static_cast<Eigen::Index>(reduction.row_step.size()));
@@ -187,8 +185,7 @@ TEST(OrbitProgram, PeakForceIsTheLeastUnknownAboveEveryContactWave) {
 TEST(OrbitProgram, RefusesMissingOrMisplacedLevelsAndReferences) {
     const Kernel kernel = exact_kernel({6, 16, 4});
     const Reduction reduction = reduce(conditions(kernel, 1));
-    const auto build = [&](Objective objective, std::optional<double> level, double energy,
-                           const VectorXd& reference) {
+    const auto build = [&](Objective objective, std::optional<double> level, double energy, const VectorXd& reference) {
         (void)orbit_program(reduction, kernel, objective, level, energy, reference);
     };
     EXPECT_THROW(build(Objective::least_shock, std::nullopt, 1.0, {}), std::invalid_argument);

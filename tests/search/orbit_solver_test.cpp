@@ -178,7 +178,8 @@ TEST(OrbitSolver, EveryObjective) {
     // nearest: to an orbit of the same level it is that orbit, at distance zero.
     const auto smooth = solve(pattern, 1, {.level = 12.0, .reference = {}});
     expect_sound(smooth);
-    OrbitRequest nearest{.level = 12.0, .objective = Objective::nearest, .reference = nsma::reference_window(*smooth.orbit)};
+    OrbitRequest nearest{
+        .level = 12.0, .objective = Objective::nearest, .reference = nsma::reference_window(*smooth.orbit)};
     const auto same = solve(pattern, 1, nearest);
     expect_sound(same);
     EXPECT_NEAR(*same.objective_value, 0, 1e-9);
@@ -212,7 +213,8 @@ TEST(OrbitSolver, ClosedGap) {
     }
     EXPECT_EQ(solve(pattern, 0, {}).verdict, Verdict::failed);  // no least-energy orbit
     for (const auto objective : {Objective::min_energy, Objective::max_energy}) {
-        EXPECT_EQ(solve(pattern, 0, {.level = std::nullopt, .objective = objective, .reference = {}}).verdict, Verdict::failed);
+        EXPECT_EQ(solve(pattern, 0, {.level = std::nullopt, .objective = objective, .reference = {}}).verdict,
+                  Verdict::failed);
     }
     expect_sound(solve(pattern, 0, {.level = 1.0, .objective = Objective::nearest, .reference = {}}));
 }
@@ -229,10 +231,12 @@ TEST(OrbitSolver, ClosedGapOfABarThatIsNotOfUnits) {
         expect_sound(answer);
         EXPECT_NEAR(nsma::energy(*answer.orbit), 0.3, 1e-12);
         const double step = 0.5 / std::sqrt(70e9 / 2700.0) / 8;
-        EXPECT_LT((nsma::amplitudes(*answer.orbit) - answer.orbit->beta * (unit / step)).norm(), 1e-12 * nsma::amplitudes(*answer.orbit).norm());
+        EXPECT_LT((nsma::amplitudes(*answer.orbit) - answer.orbit->beta * (unit / step)).norm(),
+                  1e-12 * nsma::amplitudes(*answer.orbit).norm());
         if (objective != Objective::least_force) continue;
         const double newton = 70e9 * 7.85e-5 * unit / 0.5;
-        EXPECT_NEAR(nsma::contact_force(*answer.orbit).cwiseAbs().maxCoeff(), *answer.objective_value * newton, 1e-12 * newton);
+        EXPECT_NEAR(nsma::contact_force(*answer.orbit).cwiseAbs().maxCoeff(), *answer.objective_value * newton,
+                    1e-12 * newton);
     }
 }
 
@@ -263,10 +267,11 @@ TEST(OrbitSolver, UnitsChangeNothingButUnits) {
     EXPECT_NEAR(nsma::energy(*rod.orbit), *request.level * joule, 1e-12 * *request.level * joule);
 }
 
-// A level asked for twice with `nearest`, and a closed gap's levels: the optimum is at distance 0, where only an absolute
-// comparison of two objectives has a meaning.
+// A level asked for twice with `nearest`, and a closed gap's levels: the optimum is at distance 0, where only an
+// absolute comparison of two objectives has a meaning.
 TEST(OrbitSolver, BothSolversAgreeAtDistanceZero) {
-    for (const auto& [pattern, gap] : {std::pair{Pattern{6, 16, 4}, 1.0}, {Pattern{8, 4, 4}, -1.0}, {Pattern{6, 10, 8}, 0.0}}) {
+    for (const auto& [pattern, gap] :
+         {std::pair{Pattern{6, 16, 4}, 1.0}, {Pattern{8, 4, 4}, -1.0}, {Pattern{6, 10, 8}, 0.0}}) {
         const Bar bar = bar_with_gap(gap);
         const auto problem = pattern_problem(pattern, bar.gap_sign());
         ASSERT_EQ(problem.verdict, Verdict::admissible);
@@ -328,7 +333,8 @@ TEST(OrbitSolver, IpoptStartsFromAnOrbitAtALevelNearby) {
     expect_sound(warm);
     EXPECT_NEAR(*warm.objective_value, *cold.objective_value, 1e-6 * *cold.objective_value);  // the agreement asked for
     const auto first = [](const OrbitAnswer& answer, const char* name) {
-        return *std::find_if(answer.solvers.begin(), answer.solvers.end(), [&](const auto& run) { return run.name == name; });
+        return *std::find_if(answer.solvers.begin(), answer.solvers.end(),
+                             [&](const auto& run) { return run.name == name; });
     };
     EXPECT_EQ(first(cold, "ipopt").start, 0);
     EXPECT_EQ(first(warm, "ipopt").start, -1);
@@ -358,7 +364,8 @@ TEST(OrbitSolver, AStartOfAnotherPatternIsMisuse) {
     const Pattern pattern{20, 48, 16};
     const double level = 1.5 * least_energy(pattern, 1);
     EXPECT_THROW((void)solve(pattern, 1, {.level = level, .start = VectorXd::Ones(1)}), std::invalid_argument);
-    EXPECT_THROW((void)solve(pattern, 1, {.level = level, .start = VectorXd::Constant(8, std::nan(""))}), std::invalid_argument);
+    EXPECT_THROW((void)solve(pattern, 1, {.level = level, .start = VectorXd::Constant(8, std::nan(""))}),
+                 std::invalid_argument);
 }
 
 TEST(OrbitSolver, StarvedSolversStillGiveAnOrbitAndSaySo) {
@@ -402,7 +409,8 @@ TEST(OrbitSolver, ManyLevelsOfManyPatternsAreSound) {
                 const double top = interval.greatest.value_or(20 * *interval.least);
                 for (const double share : {0.0, 0.2, 0.8, 1.0}) {
                     const double level = *interval.least + share * (top - *interval.least);
-                    const auto answer = solver.solve(bar_with_gap(gap_sign), problem, {.level = level, .reference = {}});
+                    const auto answer =
+                        solver.solve(bar_with_gap(gap_sign), problem, {.level = level, .reference = {}});
                     SCOPED_TRACE(testing::Message() << "(" << period - contact << ", " << contact << ") gap "
                                                     << gap_sign << " level " << level);
                     expect_sound(answer);
@@ -426,7 +434,8 @@ TEST(OrbitSolver, Misuse) {
     EXPECT_THROW((void)solver.solve(bar_with_gap(-1), problem, {}), std::invalid_argument);
     EXPECT_THROW((void)solver.solve(bar_with_gap(0), problem, {}), std::invalid_argument);
     for (const double level : {0.0, -1.0, std::nan(""), nsma::no_bound}) {
-        EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem, {.level = level, .reference = {}}), std::invalid_argument);
+        EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem, {.level = level, .reference = {}}),
+                     std::invalid_argument);
     }
     OrbitRequest wrong{.level = 12.0, .objective = Objective::nearest, .reference = VectorXd::Ones(5)};
     EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem, wrong), std::invalid_argument);
@@ -434,7 +443,9 @@ TEST(OrbitSolver, Misuse) {
     wrong.level = *problem.set.interval().greatest;
     EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem, wrong), std::invalid_argument);
     // An extreme of the energy has no level.
-    EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem, {.level = 12.0, .objective = Objective::max_energy, .reference = {}}), std::invalid_argument);
+    EXPECT_THROW((void)solver.solve(bar_with_gap(1), problem,
+                                    {.level = 12.0, .objective = Objective::max_energy, .reference = {}}),
+                 std::invalid_argument);
     EXPECT_THROW((void)pattern_problem({0, 1, 1}, 1), std::invalid_argument);
     EXPECT_THROW((void)pattern_problem({6, 0, 4}, 1), std::invalid_argument);
     OrbitSolverOptions options;

@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "../numerics/textbook.hpp"
 #include "nsma/orbit/kernel.hpp"
 #include "nsma/set/admissible_set.hpp"
 #include "set/level_points.hpp"
-#include "search/orbit_program.hpp"
 #include "nsma/search/orbit_solver.hpp"
-#include "../numerics/textbook.hpp"
+#include "search/orbit_program.hpp"
 
 namespace {
 
@@ -136,7 +136,8 @@ TEST(Polish, NeverRaisesTheObjectiveAndStaysFeasible) {
     for (int trial = 0; trial < 100; ++trial) {
         // Random quadratics on a circle, from anywhere on it.
         auto item = textbook::circle();
-        Eigen::Matrix3d hessian = Eigen::Matrix3d::NullaryExpr([&](Eigen::Index, Eigen::Index) { return normal(random); });
+        Eigen::Matrix3d hessian =
+            Eigen::Matrix3d::NullaryExpr([&](Eigen::Index, Eigen::Index) { return normal(random); });
         hessian = (hessian + hessian.transpose()).eval();
         item.program.hessian = hessian.sparseView();
         const VectorXd start = perturbed(item, Vector3d(normal(random), normal(random), normal(random)));
@@ -184,8 +185,7 @@ TEST(Polish, OrbitProgramsDescendToKktPoints) {
         const auto kernel = nsma::exact_kernel(pattern);
         const auto set = nsma::admissible_set(nsma::reduce(nsma::conditions(kernel, 1)));
         const double level = 1.5 * *set.interval().least;
-        const auto program =
-            nsma::orbit_program(set.reduction, kernel, nsma::Objective::least_shock, level, 1.0);
+        const auto program = nsma::orbit_program(set.reduction, kernel, nsma::Objective::least_shock, level, 1.0);
         const nsma::LevelPoints points(set, level);
         double best = no_bound;
         double bound = -no_bound;
@@ -217,7 +217,8 @@ TEST(Polish, LeavesASaddle) {
     }
     const auto polished = polish(program.program, program.point(gamma));
     EXPECT_TRUE(polished.stationary);
-    EXPECT_NEAR(polished.objective * program.objective_unit, 2 * 10 * 8 * (3 * 0.8 - 1), 1e-9 * 224);  // two neighbours, 8 runs a period
+    EXPECT_NEAR(polished.objective * program.objective_unit, 2 * 10 * 8 * (3 * 0.8 - 1),
+                1e-9 * 224);  // two neighbours, 8 runs a period
 }
 
 TEST(Polish, ComesToTheOptimumCloseToTheLeastEnergy) {
@@ -229,8 +230,8 @@ TEST(Polish, ComesToTheOptimumCloseToTheLeastEnergy) {
             const auto problem = nsma::pattern_problem(pattern, sign);
             for (const double above : {1e-10, 1e-9, 1e-8, 1e-6, 1e-3}) {
                 const double level = *problem.interval.least * (1 + above);
-                const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, nsma::Objective::least_shock,
-                                                         level, *problem.interval.least);
+                const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel,
+                                                         nsma::Objective::least_shock, level, *problem.interval.least);
                 const nsma::LevelPoints points(problem.set, level);
                 const auto polished = polish(program.program, program.point(*points.start(0)));
                 EXPECT_TRUE(polished.stationary) << size << ' ' << sign << ' ' << above;

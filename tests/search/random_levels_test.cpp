@@ -89,7 +89,8 @@ TEST(RandomLevels, NoWrongVerdictAndNoneLost) {
         const bool open = bounded && !above && exact(level) / *certificate.energy_attained - 1 > rounding;
         EXPECT_FALSE(open) << "the greatest energy is not exact";
         const Verdict expected = below ? Verdict::below : above ? Verdict::above : Verdict::admissible;
-        EXPECT_EQ(answer.verdict, expected) << "level " << level << " of [" << low << ", " << high << "]: " << answer.reason;
+        EXPECT_EQ(answer.verdict, expected)
+            << "level " << level << " of [" << low << ", " << high << "]: " << answer.reason;
         EXPECT_TRUE(answer.verdict_proved);
         if (expected != Verdict::admissible || answer.verdict != Verdict::admissible) continue;
         ++solved;

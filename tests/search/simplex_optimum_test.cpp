@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "simplex_reference.hpp"
 #include "nsma/orbit/kernel.hpp"
 #include "nsma/set/admissible_set.hpp"
 #include "search/orbit_program.hpp"
-#include "simplex_reference.hpp"
 
 namespace {
 
@@ -98,7 +98,8 @@ TEST(SimplexOptimum, NoPointIsNearerToTheTarget) {
         for (auto& value : target) value = draw(-1, i % 7 == 0 ? -0.1 : 1);
         if (i % 5 == 0) target[0] = target[n - 1];  // ties
         if (i % 25 == 0) target.setConstant(0.7);
-        SCOPED_TRACE(testing::Message() << n << " sum " << s << " square " << level.square << " target " << target.transpose());
+        SCOPED_TRACE(testing::Message() << n << " sum " << s << " square " << level.square << " target "
+                                        << target.transpose());
         const VectorXd x = nsma::nearest_point(level, target);
         expect_on_level(x, level);
         const auto best = reference::least(MatrixXd::Zero(n, n), -0.5 * target, s, level.square);
@@ -124,10 +125,12 @@ TEST(SimplexOptimum, EndsOfTheLevelAreTheCentreAndAVertex) {
     for (const int n : {1, 2, 3, 8}) {
         const SimplexLevel low{n, 2.0, 4.0 / n}, high{n, 2.0, 4.0};
         const VectorXd target = VectorXd::LinSpaced(n, 0, 1);
-        for (const VectorXd& x : {nsma::smoothest_point(low, 0.0), nsma::nearest_point(low, target), nsma::least_peak_point(low)}) {
+        for (const VectorXd& x :
+             {nsma::smoothest_point(low, 0.0), nsma::nearest_point(low, target), nsma::least_peak_point(low)}) {
             EXPECT_LT((x.array() - 2.0 / n).abs().maxCoeff(), 1e-7);  // the root of rounding: the sphere touches there
         }
-        for (const VectorXd& x : {nsma::smoothest_point(high, 0.0), nsma::nearest_point(high, target), nsma::least_peak_point(high)}) {
+        for (const VectorXd& x :
+             {nsma::smoothest_point(high, 0.0), nsma::nearest_point(high, target), nsma::least_peak_point(high)}) {
             EXPECT_NEAR(x.maxCoeff(), 2.0, 1e-12);
         }
     }
@@ -169,11 +172,14 @@ TEST(SimplexOptimum, TheShockOfEverySimplexIsThatOfNeighbours) {
                 for (const int gap_sign : {-1, 0, 1}) {
                     const auto kernel = nsma::exact_kernel({cells, free, period - free});
                     const auto set = nsma::admissible_set(nsma::reduce(nsma::conditions(kernel, gap_sign)));
-                    if (set.status != nsma::AdmissibleSet::Status::nonempty || set.shape != nsma::AdmissibleSet::Shape::simplex) continue;
+                    if (set.status != nsma::AdmissibleSet::Status::nonempty ||
+                        set.shape != nsma::AdmissibleSet::Shape::simplex)
+                        continue;
                     const int n = set.reduction.variables();
                     MatrixXd shock(n, n);
                     const auto value = [&](const VectorXd& gamma) {
-                        return nsma::objective_of_waves(kernel, nsma::Objective::least_shock, set.reduction.beta(gamma));
+                        return nsma::objective_of_waves(kernel, nsma::Objective::least_shock,
+                                                        set.reduction.beta(gamma));
                     };
                     for (int i = 0; i < n; ++i) {
                         for (int j = 0; j < n; ++j) {

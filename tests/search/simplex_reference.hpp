@@ -8,9 +8,9 @@
 
 #include <Eigen/Dense>
 
-/// The best points of small programs over {x >= 0, sum x = s, |x|^2 = q} by looking everywhere: for each set of variables that
-/// may be positive every stationary point on its sphere, by the roots of the secular equation between all of its poles.
-/// Shares no idea with the closed forms: no order of the variables, no shape of the optimum.
+/// The best points of small programs over {x >= 0, sum x = s, |x|^2 = q} by looking everywhere: for each set of
+/// variables that may be positive every stationary point on its sphere, by the roots of the secular equation between
+/// all of its poles. Shares no idea with the closed forms: no order of the variables, no shape of the optimum.
 namespace reference {
 
 using Eigen::Index;
@@ -48,7 +48,8 @@ inline std::vector<VectorXd> stationary_points(const MatrixXd& a, const VectorXd
         if (!y.allFinite() || std::abs(y.squaredNorm() - radius) > 1e-9 * (1e-3 * q + radius)) return;
         points.push_back(centre + basis * (spectrum.eigenvectors() * y));
     };
-    // (d + mu) y = -g with |y|^2 = radius. Where g has no part in an eigenspace mu = -d is possible, with any part there.
+    // (d + mu) y = -g with |y|^2 = radius. Where g has no part in an eigenspace mu = -d is possible, with any part
+    // there.
     for (Index i = 0; i < d.size(); ++i) {
         bool free_part = true;
         VectorXd y(d.size());
@@ -118,8 +119,8 @@ inline Best least(const MatrixXd& a, const VectorXd& c, double s, double q) {
     return best;
 }
 
-/// The least bound t for which {0 <= x <= t, sum x = s (unless 0)} reaches |x|^2 = q: its farthest points have only entries 0
-/// and t but for one, and all of them are tried.
+/// The least bound t for which {0 <= x <= t, sum x = s (unless 0)} reaches |x|^2 = q: its farthest points have only
+/// entries 0 and t but for one, and all of them are tried.
 inline double least_peak(int n, double s, double q) {
     if (s == 0) return std::sqrt(q / n);
     const auto reach = [&](double t) {

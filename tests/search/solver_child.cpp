@@ -7,9 +7,9 @@
 
 #include <nlopt.hpp>
 
-#include "nsma/search/orbit_solver.hpp"
-#include "numerics/solver.hpp"
 #include "../numerics/textbook.hpp"
+#include "numerics/solver.hpp"
+#include "nsma/search/orbit_solver.hpp"
 
 namespace {
 
@@ -97,13 +97,20 @@ int main(int count, char** words) {
     const char* name = count == 2 ? words[1] : "";
     const auto is = [&](const char* other) { return std::strcmp(name, other) == 0; };
     try {
-        if (is("raw-cobyla")) raw_cobyla();
-        else if (is("raw-auglag")) raw_auglag();
-        else if (is("threads")) threads();
-        else if (is("cobyla")) ours(nsma::NloptMethod::cobyla);
-        else if (is("auglag")) ours(nsma::NloptMethod::auglag_lbfgs);
-        else if (is("slsqp")) ours(nsma::NloptMethod::slsqp);
-        else return 2;
+        if (is("raw-cobyla"))
+            raw_cobyla();
+        else if (is("raw-auglag"))
+            raw_auglag();
+        else if (is("threads"))
+            threads();
+        else if (is("cobyla"))
+            ours(nsma::NloptMethod::cobyla);
+        else if (is("auglag"))
+            ours(nsma::NloptMethod::auglag_lbfgs);
+        else if (is("slsqp"))
+            ours(nsma::NloptMethod::slsqp);
+        else
+            return 2;
     } catch (const std::exception& error) {
         std::printf("%s\n", error.what());
         return 1;

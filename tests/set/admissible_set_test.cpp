@@ -18,13 +18,13 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using nsma::AdmissibleSet;
 using nsma::admissible_set;
+using nsma::AdmissibleSet;
 using nsma::conditions;
 using nsma::exact_kernel;
 using nsma::Pattern;
-using nsma::Reduction;
 using nsma::reduce;
+using nsma::Reduction;
 using Status = nsma::AdmissibleSet::Status;
 
 AdmissibleSet set_of(const Pattern& pattern, int gap_sign) {
@@ -168,8 +168,7 @@ TEST(AdmissibleSet, EqualsBruteForceVertexEnumeration) {
                     EXPECT_NEAR(set.ray.norm(), 1, 1e-12);
                 } else {
                     // Both solve the same small systems; only rounding differs.
-                    EXPECT_NEAR(*interval.greatest, reduction.energy_factor * greatest,
-                                1e-10 * *interval.greatest);
+                    EXPECT_NEAR(*interval.greatest, reduction.energy_factor * greatest, 1e-10 * *interval.greatest);
                 }
             }
         }
@@ -210,8 +209,7 @@ TEST(AdmissibleSet, LeastEnergyOfEveryModeIsTheClosedForm) {
                 for (const Pattern& pattern : nsma::mode_patterns(mode, cells, gap_sign)) {
                     const auto set = set_of(pattern, gap_sign);
                     ASSERT_EQ(set.status, Status::nonempty) << set.reason;
-                    const double expected =
-                        std::pow(mode * mode * pattern.period_ratio() - (2 * mode + 1), -2);
+                    const double expected = std::pow(mode * mode * pattern.period_ratio() - (2 * mode + 1), -2);
                     // The denominator loses up to two digits to cancellation in the formula itself.
                     EXPECT_NEAR(*set.interval().least, expected, 1e-12 * expected);
                     ++checked;
@@ -229,8 +227,7 @@ TEST(AdmissibleSet, FirstModeIsASimplex) {
             const auto set = set_of(pattern, 1);
             const int m = nsma::kernel_dimension(pattern);
             ASSERT_TRUE(set.interval().greatest.has_value());
-            EXPECT_NEAR(*set.interval().greatest, m * *set.interval().least,
-                        1e-12 * *set.interval().greatest);
+            EXPECT_NEAR(*set.interval().greatest, m * *set.interval().least, 1e-12 * *set.interval().greatest);
             if (m > 1) ++checked;
         }
     }
@@ -345,8 +342,8 @@ TEST(AdmissibleSet, ClosedGapRaysAreOrbitsAtAnyEnergy) {
                 const VectorXd beta = set.reduction.beta(set.ray * std::sqrt(energy / set.energy(set.ray)));
                 const auto judged = nsma::replay(nsma::make_orbit(bar, kernel, beta), energy);
                 EXPECT_TRUE(judged.accepted)
-                    << "N = " << cells << " (" << pattern.free_steps << ", " << pattern.contact_steps
-                    << ") energy " << energy << ", worst " << judged.violations.worst();
+                    << "N = " << cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") energy "
+                    << energy << ", worst " << judged.violations.worst();
             }
         }
     }

@@ -60,8 +60,7 @@ Eigen::VectorXd sharpened(const Reduction& reduction, const Eigen::VectorXd& ver
     const double tolerance = vertex_tolerance * scale;
     std::vector<Eigen::Index> free_columns;
     for (Eigen::Index j = 0; j < vertex.size(); ++j) {
-        const bool at_zero = reduction.bounded[static_cast<std::size_t>(j)] != 0 &&
-                             std::abs(vertex[j]) <= tolerance;
+        const bool at_zero = reduction.bounded[static_cast<std::size_t>(j)] != 0 && std::abs(vertex[j]) <= tolerance;
         if (!at_zero) free_columns.push_back(j);
     }
     std::vector<Eigen::Index> active;
@@ -99,8 +98,7 @@ Eigen::VectorXd sharpened(const Reduction& reduction, const Eigen::VectorXd& ver
 Eigen::VectorXd cone_direction(const Reduction& reduction) {
     const auto n = static_cast<Eigen::Index>(reduction.variables());
     const bool free_variables = reduction.has_free_variables();
-    const bool one_sided = (reduction.contact_row.array() > 0).all() ||
-                           (reduction.contact_row.array() < 0).all();
+    const bool one_sided = (reduction.contact_row.array() > 0).all() || (reduction.contact_row.array() < 0).all();
     if (!free_variables && one_sided) return {};
     Reduction homogeneous = reduction;
     homogeneous.gap_sign = 0;
@@ -141,8 +139,7 @@ Projection project_contact_row(const Reduction& reduction) {
         if (reduction.bounded[static_cast<std::size_t>(j)] != 0) bounded.push_back(j);
     }
     const auto count = reduction.rows.rows();
-    Eigen::MatrixXd normals =
-        Eigen::MatrixXd::Zero(n, count + static_cast<Eigen::Index>(bounded.size()));
+    Eigen::MatrixXd normals = Eigen::MatrixXd::Zero(n, count + static_cast<Eigen::Index>(bounded.size()));
     normals.leftCols(count) = reduction.rows.cast<double>().transpose();
     for (std::size_t k = 0; k < bounded.size(); ++k) {
         normals(bounded[k], count + static_cast<Eigen::Index>(k)) = -1.0;
@@ -178,9 +175,8 @@ public:
     }
 
     std::vector<Eigen::VectorXd> take() {
-        std::stable_sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) {
-            return a.squaredNorm() > b.squaredNorm() * (1 + 1e-12);
-        });
+        std::stable_sort(found_.begin(), found_.end(),
+                         [](const auto& a, const auto& b) { return a.squaredNorm() > b.squaredNorm() * (1 + 1e-12); });
         return std::move(found_);
     }
 
@@ -216,8 +212,8 @@ void find_vertices(AdmissibleSet& set, LinearSolver& solver) {
         for (int shift = 0; shift < period; ++shift) {
             Eigen::VectorXd direction(n);
             for (Eigen::Index j = 0; j < n; ++j) {
-                const bool positive = set.reduction.bounded[static_cast<std::size_t>(j)] != 0 ||
-                                      (j + shift) / period % 2 == 0;
+                const bool positive =
+                    set.reduction.bounded[static_cast<std::size_t>(j)] != 0 || (j + shift) / period % 2 == 0;
                 direction[j] = positive ? 1.0 : -1.0;
             }
             climber.climb(direction);
@@ -272,15 +268,13 @@ nsma::AdmissibleSet general_set(nsma::Reduction reduction) {
     const Projection projection = project_contact_row(data);
     const bool projected_empty = projection.rho.norm() <= projection_tolerance * target.norm();
     LinearSolver solver(cone_program(data, data.gap_sign, no_bound));
-    const LinearSolution feasible =
-        solver.minimise(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.variables())));
+    const LinearSolution feasible = solver.minimise(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.variables())));
     const bool linear_empty = feasible.status == LinearStatus::infeasible;
     if (!projection.converged) {
         fail(set, "the least-norm projection did not converge");
         return set;
     }
-    if (linear_empty != projected_empty ||
-        (!linear_empty && feasible.status != LinearStatus::optimal)) {
+    if (linear_empty != projected_empty || (!linear_empty && feasible.status != LinearStatus::optimal)) {
         fail(set, "the linear program and the least-norm projection disagree on emptiness");
         return set;
     }

@@ -5,8 +5,8 @@
 namespace oracle {
 
 /// The set by another way than admissible_set(): emptiness by linear program (CLP) and, independently, by projecting
-/// COND2's row on the cone of COND1 and COND3 (least norm), which also gives E_min; vertices by linear programs that climb.
-/// Where the two disagree the status is `failed`.
+/// COND2's row on the cone of COND1 and COND3 (least norm), which also gives E_min; vertices by linear programs that
+/// climb. Where the two disagree the status is `failed`.
 [[nodiscard]] nsma::AdmissibleSet general_set(nsma::Reduction reduction);
 
 }  // namespace oracle

@@ -9,8 +9,8 @@
 namespace {
 
 using Eigen::VectorXd;
-using nsma::AdmissibleSet;
 using nsma::admissible_set;
+using nsma::AdmissibleSet;
 using nsma::conditions;
 using nsma::exact_kernel;
 using nsma::LevelPoints;

@@ -126,9 +126,8 @@ TEST(Reduction, KeepsExactlyTheAdmissiblePoints) {
                 const int scale = scale_of(kernel, gap_sign, beta);
                 const bool literal = literally_admissible(kernel, gap_sign, beta, scale);
                 ASSERT_EQ(in_reduced_set(reduction, beta, scale), literal)
-                    << "N = " << pattern.cells << " (" << pattern.free_steps << ", "
-                    << pattern.contact_steps << ") gap " << gap_sign << " beta "
-                    << beta.transpose();
+                    << "N = " << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps
+                    << ") gap " << gap_sign << " beta " << beta.transpose();
                 ++(literal ? inside : outside);
             }
         }

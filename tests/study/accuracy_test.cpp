@@ -133,7 +133,8 @@ TEST(Accuracy, TheWholePathsSucceedInEveryCellOfAReducedMap) {
                     EXPECT_TRUE(trial.certified) << size << ' ' << level;
                     EXPECT_LE(trial.error(), 1e-9);
                     // The default knows the answer; a cross-check has really asked both, at two amplitudes too.
-                    EXPECT_EQ(trial.iterations > 0, method.kind == nsma::ProgramMethod::Kind::both) << size << ' ' << level;
+                    EXPECT_EQ(trial.iterations > 0, method.kind == nsma::ProgramMethod::Kind::both)
+                        << size << ' ' << level;
                 }
                 EXPECT_EQ(whole, 2);
             }
@@ -150,7 +151,8 @@ TEST(Accuracy, ReferencesAreProvedAtEverySizeAndProofFirstComesToThem) {
     const nsma::Bar bar;
     for (const int size : sizes) {
         const auto problem = nsma::pattern_problem(nsma::accuracy_pattern(size, 1), 1);
-        for (const double level : {1.1 * *problem.interval.least, 1.3 * *problem.interval.least, 0.8 * *problem.interval.greatest}) {
+        for (const double level :
+             {1.1 * *problem.interval.least, 1.3 * *problem.interval.least, 0.8 * *problem.interval.greatest}) {
             const nsma::ProgramCase on(bar, problem, nsma::Objective::least_shock, level);
             EXPECT_TRUE(on.proved) << size << ' ' << level;
             for (const auto& method : nsma::program_methods(true)) {
@@ -161,8 +163,8 @@ TEST(Accuracy, ReferencesAreProvedAtEverySizeAndProofFirstComesToThem) {
                 EXPECT_TRUE(trial.certified) << size << ' ' << level;
             }
         }
-        // Two neighbours are left at 0.8 E_max: x + y = 1, x^2 + y^2 = q, and a run costs x^2 + y^2 + (x - y)^2 = 3 q - 1,
-        // so 2N R (3 q - 1) with R = 8 runs a period.
+        // Two neighbours are left at 0.8 E_max: x + y = 1, x^2 + y^2 = q, and a run costs x^2 + y^2 + (x - y)^2 = 3 q -
+        // 1, so 2N R (3 q - 1) with R = 8 runs a period.
         if (size == 2) continue;  // they are neighbours on both sides there
         const nsma::ProgramCase top(bar, problem, nsma::Objective::least_shock, 0.8 * *problem.interval.greatest);
         const double exact = 2.0 * (2.5 * size) * 8.0 * (3.0 * 0.8 - 1.0);

@@ -13,7 +13,8 @@ using nsma::KernelMethod;
 using nsma::Pattern;
 
 constexpr KernelMethod methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd,
-                                    KernelMethod::rank_revealing_qr, KernelMethod::matrix_powers};  // divided_svd can err
+                                    KernelMethod::rank_revealing_qr,
+                                    KernelMethod::matrix_powers};  // divided_svd can err
 
 const nsma::Bar steel{1.0, 210e9, 7850.0, 1e-4, 1e-4};
 
@@ -29,7 +30,9 @@ TEST(KernelMethods, AllSpanTheSameSpace) {
                         << nsma::name(method) << ' ' << cells << ' ' << steps - contact << ' ' << contact;
                     // Matrices of size 12 with entries of order one.
                     EXPECT_LE(nsma::space_distance(basis, reference), 1e-12) << nsma::name(method);
-                    EXPECT_LE((basis.transpose() * basis - Eigen::MatrixXd::Identity(basis.cols(), basis.cols())).norm(), 1e-12);
+                    EXPECT_LE(
+                        (basis.transpose() * basis - Eigen::MatrixXd::Identity(basis.cols(), basis.cols())).norm(),
+                        1e-12);
                 }
             }
         }
@@ -45,7 +48,8 @@ TEST(KernelMethods, ToleranceDecidesTheDimension) {
         EXPECT_LE(found[0], found[1]);
         EXPECT_EQ(found[2], 20);  // everything is zero
     }
-    EXPECT_THROW((void)nsma::dimensions_found(KernelMethod::exact_cycles, steel, pattern, tolerances), std::invalid_argument);
+    EXPECT_THROW((void)nsma::dimensions_found(KernelMethod::exact_cycles, steel, pattern, tolerances),
+                 std::invalid_argument);
     EXPECT_THROW((void)nsma::kernel_space(KernelMethod::dense_svd, steel, pattern, 0), std::invalid_argument);
 }
 

@@ -1,5 +1,5 @@
-// Every level of whole small spectra against searches that look everywhere: simplexes through all of their faces, chains
-// from many starts. Shares nothing with the solver but the pattern. NSMA_LONG_TESTS=1 goes up to N = 6.
+// Every level of whole small spectra against searches that look everywhere: simplexes through all of their faces,
+// chains from many starts. Shares nothing with the solver but the pattern. NSMA_LONG_TESTS=1 goes up to N = 6.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -33,11 +33,13 @@ void for_each_pattern(int cells_lo, int cells_hi, Visit visit) {
         for (const Pattern& pattern : nsma::patterns_in(cells, {2, 4 * cells, 1, nsma::max_period_steps})) {
             for (const int gap_sign : {1, -1, 0}) {
                 Subject subject{{}, nsma::pattern_problem(pattern, gap_sign, {.prove = false}), {}};
-                if (subject.problem.verdict != nsma::Verdict::admissible || subject.problem.kernel.dimension() < 2) continue;
+                if (subject.problem.verdict != nsma::Verdict::admissible || subject.problem.kernel.dimension() < 2)
+                    continue;
                 subject.bar.gap = gap_sign;
                 const auto& interval = subject.problem.interval;
                 for (const double share : {1e-3, 0.2, 0.55, 0.9}) {
-                    subject.levels.push_back(gap_sign == 0 ? 1 + share : *interval.least + share * (*interval.greatest - *interval.least));
+                    subject.levels.push_back(
+                        gap_sign == 0 ? 1 + share : *interval.least + share * (*interval.greatest - *interval.least));
                 }
                 visit(subject);
             }
@@ -49,7 +51,8 @@ void for_each_pattern(int cells_lo, int cells_hi, Visit visit) {
 VectorXd target_window(const Subject& subject, double part) {
     const auto& problem = subject.problem;
     VectorXd gamma(problem.set.reduction.variables());
-    for (Eigen::Index j = 0; j < gamma.size(); ++j) gamma[j] = part * (std::fmod(0.37 * static_cast<double>(j + 1), 1.0) - 0.2);
+    for (Eigen::Index j = 0; j < gamma.size(); ++j)
+        gamma[j] = part * (std::fmod(0.37 * static_cast<double>(j + 1), 1.0) - 0.2);
     return nsma::reference_window(nsma::make_orbit(subject.bar, problem.kernel, problem.set.reduction.beta(gamma)));
 }
 
@@ -83,13 +86,15 @@ TEST(OptimumSpectrum, SimplexesHaveTheBestOfAllTheirFaces) {
                 nsma::OrbitRequest request{level, objective, {}, {}};
                 if (objective == Objective::nearest) request.reference = target_window(subject, 0.7);
                 const auto answer = solver.solve(subject.bar, problem, request);
-                SCOPED_TRACE(testing::Message() << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") gap "
-                                                << gap_sign << " " << nsma::name(objective) << " at " << level);
+                SCOPED_TRACE(testing::Message()
+                             << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") gap "
+                             << gap_sign << " " << nsma::name(objective) << " at " << level);
                 ASSERT_EQ(answer.verdict, nsma::Verdict::admissible) << answer.reason;
                 ASSERT_TRUE(answer.optimality && answer.optimality->global);
                 EXPECT_LE(answer.replay->violations.worst(), 1e-9);
                 const literal::Program program(pattern, gap_sign, objective, request.reference);
-                EXPECT_NEAR(program.value(answer.orbit->beta), *answer.objective_value, 1e-12 * (level + *answer.objective_value));
+                EXPECT_NEAR(program.value(answer.orbit->beta), *answer.objective_value,
+                            1e-12 * (level + *answer.objective_value));
                 double expected = 0;
                 const double square = level / unit;
                 if (objective == Objective::least_force) {
@@ -100,7 +105,8 @@ TEST(OptimumSpectrum, SimplexesHaveTheBestOfAllTheirFaces) {
                 } else {
                     const VectorXd c = -program.target().cwiseProduct(signs);
                     const MatrixXd a = MatrixXd::Zero(signs.size(), signs.size());
-                    expected = level + 2 * pattern.cells * request.reference.squaredNorm() + reference::least(a, c, sum, square).value;
+                    expected = level + 2 * pattern.cells * request.reference.squaredNorm() +
+                               reference::least(a, c, sum, square).value;
                 }
                 const double error = std::abs(*answer.objective_value - expected) / (std::abs(expected) + 1e-3 * level);
                 worst = std::max(worst, error);
@@ -115,7 +121,8 @@ TEST(OptimumSpectrum, SimplexesHaveTheBestOfAllTheirFaces) {
     EXPECT_GT(stuck, 20);
 }
 
-// Free vibrations: no closed form. What is called the best is not beaten from anywhere, and no bound is above any orbit.
+// Free vibrations: no closed form. What is called the best is not beaten from anywhere, and no bound is above any
+// orbit.
 TEST(OptimumSpectrum, ChainsClaimNoMoreThanIsTrue) {
     const bool longer = std::getenv("NSMA_LONG_TESTS") != nullptr;
     int compared = 0, global = 0, beaten = 0;
@@ -130,8 +137,9 @@ TEST(OptimumSpectrum, ChainsClaimNoMoreThanIsTrue) {
                 nsma::OrbitRequest request{level, objective, {}, {}};
                 if (objective == Objective::nearest) request.reference = target_window(subject, 0.7);
                 const auto answer = solver.solve(subject.bar, problem, request);
-                SCOPED_TRACE(testing::Message() << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") "
-                                                << nsma::name(objective) << " at " << level);
+                SCOPED_TRACE(testing::Message()
+                             << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") "
+                             << nsma::name(objective) << " at " << level);
                 ASSERT_EQ(answer.verdict, nsma::Verdict::admissible) << answer.reason;
                 ASSERT_TRUE(answer.optimality);
                 ++compared;
@@ -154,14 +162,16 @@ TEST(OptimumSpectrum, ChainsClaimNoMoreThanIsTrue) {
                     EXPECT_NE(answer.reason.find("not proved the best"), std::string::npos) << answer.reason;
                     if (found < *answer.objective_value * (1 - 1e-3)) {
                         ++beaten;
-                        std::printf("(%d, %d, %d) %s at %g: %.10g found, %.10g answered\n", pattern.cells, pattern.free_steps, pattern.contact_steps,
+                        std::printf("(%d, %d, %d) %s at %g: %.10g found, %.10g answered\n", pattern.cells,
+                                    pattern.free_steps, pattern.contact_steps,
                                     std::string(nsma::name(objective)).c_str(), level, found, *answer.objective_value);
                     }
                 }
             }
         }
     });
-    std::printf("%d levels of chains, %d of shock or distance proved the best, %d others beaten by more than 0.1 %%\n", compared, global, beaten);
+    std::printf("%d levels of chains, %d of shock or distance proved the best, %d others beaten by more than 0.1 %%\n",
+                compared, global, beaten);
     EXPECT_GT(compared, 50);
     EXPECT_EQ(beaten, 0);
 }
@@ -173,7 +183,8 @@ TEST(OptimumSpectrum, SensitivityHasTheAnswersOfTheSolver) {
     for_each_pattern(2, 4, [&](const Subject& subject) {
         const auto& problem = subject.problem;
         const Pattern& pattern = problem.kernel.pattern;
-        for (const auto objective : {Objective::least_shock, Objective::nearest, Objective::least_force, Objective::max_energy}) {
+        for (const auto objective :
+             {Objective::least_shock, Objective::nearest, Objective::least_force, Objective::max_energy}) {
             if (objective == Objective::max_energy && subject.bar.gap_sign() == 0) continue;  // without end
             struct Recorder final : nsma::SensitivitySink {
                 std::vector<nsma::OptimumRecord> optima;
@@ -212,15 +223,18 @@ TEST(OptimumSpectrum, SensitivityHasTheAnswersOfTheSolver) {
                 const auto answer = solver.solve(subject.bar, problem, {level, objective, before, {}});
                 ASSERT_TRUE(answer.orbit);
                 if (objective == Objective::nearest) before = nsma::reference_window(*answer.orbit);
-                SCOPED_TRACE(testing::Message() << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") gap "
-                                                << subject.bar.gap_sign() << " " << nsma::name(objective) << " at " << level);
+                SCOPED_TRACE(testing::Message()
+                             << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") gap "
+                             << subject.bar.gap_sign() << " " << nsma::name(objective) << " at " << level);
                 ASSERT_LT(i, seen.optima.size());
                 const auto& record = seen.optima[i++];
                 EXPECT_EQ(record.level, level);
                 EXPECT_EQ(record.orbit.beta, answer.orbit->beta);
                 EXPECT_EQ(record.global, answer.optimality && answer.optimality->global);
                 // The analysis may polish; where it says it is stationary it stays.
-                EXPECT_NEAR(record.value, *answer.objective_value, 1e-6 * (std::abs(*answer.objective_value) + 1e-3 * level)) << record.refusal;
+                EXPECT_NEAR(record.value, *answer.objective_value,
+                            1e-6 * (std::abs(*answer.objective_value) + 1e-3 * level))
+                    << record.refusal;
                 EXPECT_GE(record.value, -1e-12);
                 ++compared;
             }

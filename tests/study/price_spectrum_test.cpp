@@ -1,6 +1,6 @@
-// Slopes of whole small spectra against programs written down and solved anew: the scheme's own rows, SLSQP from every copy
-// of the optimum and from elsewhere, right-hand sides moved both ways. Shares nothing with the prices but the pattern.
-// NSMA_LONG_TESTS=1 in the environment takes every optimum up to N = 8.
+// Slopes of whole small spectra against programs written down and solved anew: the scheme's own rows, SLSQP from every
+// copy of the optimum and from elsewhere, right-hand sides moved both ways. Shares nothing with the prices but the
+// pattern. NSMA_LONG_TESTS=1 in the environment takes every optimum up to N = 8.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -20,12 +20,12 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using literal::Moved;
+using literal::starts_from;
 using nsma::Objective;
 using nsma::Parameter;
 using nsma::Pattern;
 using nsma::Price;
-using literal::Moved;
-using literal::starts_from;
 
 Moved moved_by(const Price& price, const Pattern& pattern, double t) {
     Moved moved;
@@ -73,7 +73,11 @@ void compare(const nsma::OptimumRecord& record, int gap_sign, const VectorXd& re
     ASSERT_NEAR(here, record.value, 1e-7 * (record.value + 1e-3 * level)) << "the optimum itself";
     for (const Price& price : record.prices) {
         // Energies move by a share of the level, lengths and forces by one of theirs.
-        const double unit = price.parameter == Parameter::energy ? level : price.parameter == Parameter::cond3_row || price.parameter == Parameter::adhesion ? std::sqrt(level) : gap_sign == 0 ? std::sqrt(level) : 1.0;
+        const double unit = price.parameter == Parameter::energy ? level
+                            : price.parameter == Parameter::cond3_row || price.parameter == Parameter::adhesion
+                                ? std::sqrt(level)
+                            : gap_sign == 0 ? std::sqrt(level)
+                                            : 1.0;
         for (const double side : {1.0, -1.0}) {
             const auto& finite = side > 0 ? price.slope.right : price.slope.left;
             const auto& root = side > 0 ? price.slope.right_root : price.slope.left_root;
@@ -94,10 +98,12 @@ void compare(const nsma::OptimumRecord& record, int gap_sign, const VectorXd& re
                 found = found && std::isfinite(there);
                 quotient[k] = (there - here) / t;
             }
-            const auto where = testing::Message() << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") gap " << gap_sign
-                                                  << " " << nsma::name(record.objective) << " at " << level << ": " << nsma::name(price.parameter)
-                                                  << " step " << (price.steps.empty() ? -1 : price.steps.front()) << (side > 0 ? " right" : " left")
-                                                  << ", " << record.tied << " tied";
+            const auto where = testing::Message()
+                               << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps
+                               << ") gap " << gap_sign << " " << nsma::name(record.objective) << " at " << level << ": "
+                               << nsma::name(price.parameter) << " step "
+                               << (price.steps.empty() ? -1 : price.steps.front()) << (side > 0 ? " right" : " left")
+                               << ", " << record.tied << " tied";
             EXPECT_TRUE(found) << where;
             if (!found) continue;
             const double slope = 2 * quotient[1] - quotient[0];
@@ -129,25 +135,28 @@ TEST(PriceSpectrum, EverySlopeIsThatOfTheProgramsSolvedAnew) {
                 bar.gap = gap_sign;
                 const auto& interval = problem.interval;
                 for (const double share : {0.13, 0.4, 0.5, 0.75}) {
-                    const double level = gap_sign == 0 ? 1 + share : *interval.least + share * (*interval.greatest - *interval.least);
+                    const double level =
+                        gap_sign == 0 ? 1 + share : *interval.least + share * (*interval.greatest - *interval.least);
                     for (const auto objective : {Objective::least_shock, Objective::least_force, Objective::nearest}) {
                         nsma::OrbitRequest request{level, objective, {}, {}};
                         if (objective == Objective::nearest) {  // a target that tells the columns apart
                             VectorXd skew = VectorXd::LinSpaced(problem.kernel.dimension(), 0.3, 1.0);
-                            skew = problem.set.reduction.beta(problem.set.reduction.gamma(skew).cwiseAbs() / problem.kernel.dimension());
+                            skew = problem.set.reduction.beta(problem.set.reduction.gamma(skew).cwiseAbs() /
+                                                              problem.kernel.dimension());
                             request.reference = nsma::reference_window(nsma::make_orbit(bar, problem.kernel, skew));
                         }
                         const auto answer = solver.solve(bar, problem, request);
                         ASSERT_TRUE(answer.orbit) << answer.reason;
-                        const auto record = nsma::optimum_record(*answer.orbit, gap_sign, objective, level, answer.reference);
+                        const auto record =
+                            nsma::optimum_record(*answer.orbit, gap_sign, objective, level, answer.reference);
                         compare(record, gap_sign, answer.reference, tally);
                     }
                 }
             }
         }
     }
-    std::printf("%d optima, %d tied; %d slopes compared, worst %.1e, %d roots\n", tally.optima, tally.tied, tally.compared,
-                tally.worst, tally.roots);
+    std::printf("%d optima, %d tied; %d slopes compared, worst %.1e, %d roots\n", tally.optima, tally.tied,
+                tally.compared, tally.worst, tally.roots);
     EXPECT_GT(tally.compared, longer ? 5'000 : 200);
     EXPECT_GT(tally.tied, 10);
 }
@@ -155,7 +164,8 @@ TEST(PriceSpectrum, EverySlopeIsThatOfTheProgramsSolvedAnew) {
 // Greatest energies of sets with every right-hand side moved, by trying every choice of rows that can meet in a vertex.
 class Vertices {
 public:
-    Vertices(const Pattern& pattern, int gap_sign) : pattern_(pattern), gap_sign_(gap_sign), program_(pattern, gap_sign, Objective::least_shock, {}) {
+    Vertices(const Pattern& pattern, int gap_sign)
+        : pattern_(pattern), gap_sign_(gap_sign), program_(pattern, gap_sign, Objective::least_shock, {}) {
         const int m = program_.dimension();
         tip_ = Eigen::RowVectorXd::Zero(m);
         for (int k = 0; k < 2 * pattern.cells; ++k) tip_ -= program_.wave(k);
@@ -210,8 +220,11 @@ public:
                     if (lu.rank() < m) continue;
                     const VectorXd x = lu.solve(target);
                     bool inside = true;
-                    for (std::size_t i = 0; i < normals.size(); ++i) inside = inside && normals[i].dot(x) <= limits[i] + 1e-9;
-                    if (inside) best = std::max(best, 4.0 * pattern_.cells * pattern_.cells / pattern_.class_count() * x.squaredNorm());
+                    for (std::size_t i = 0; i < normals.size(); ++i)
+                        inside = inside && normals[i].dot(x) <= limits[i] + 1e-9;
+                    if (inside)
+                        best = std::max(
+                            best, 4.0 * pattern_.cells * pattern_.cells / pattern_.class_count() * x.squaredNorm());
                 }
                 return;
             }
@@ -254,14 +267,17 @@ TEST(PriceSpectrum, GreatestEnergiesMoveAsTheirVerticesDo) {
         for (const Pattern& pattern : nsma::patterns_in(cells, {2, 4 * cells, 1, nsma::max_period_steps})) {
             for (const int gap_sign : {1, -1}) {
                 const auto problem = nsma::pattern_problem(pattern, gap_sign, {.prove = false});
-                if (problem.verdict != nsma::Verdict::admissible || problem.kernel.dimension() < 2 || problem.kernel.dimension() > 4) continue;
+                if (problem.verdict != nsma::Verdict::admissible || problem.kernel.dimension() < 2 ||
+                    problem.kernel.dimension() > 4)
+                    continue;
                 const Vertices vertices(pattern, gap_sign);
                 const auto set = nsma::relaxed_set(problem.kernel, gap_sign);
                 const auto record = nsma::interval_record(set);
                 ASSERT_TRUE(record.greatest);
                 const double here = vertices.greatest({});
                 EXPECT_NEAR(*record.greatest, here, 1e-9 * here);  // of the linear solves
-                const auto where = testing::Message() << cells << " (" << pattern.free_steps << ", " << pattern.contact_steps << ") gap " << gap_sign;
+                const auto where = testing::Message() << cells << " (" << pattern.free_steps << ", "
+                                                      << pattern.contact_steps << ") gap " << gap_sign;
                 for (const Price& price : record.greatest_prices) {
                     for (const double side : {1.0, -1.0}) {
                         const auto& finite = side > 0 ? price.slope.right : price.slope.left;
@@ -274,7 +290,8 @@ TEST(PriceSpectrum, GreatestEnergiesMoveAsTheirVerticesDo) {
                         const double slope = 2 * quotient[1] - quotient[0];
                         const double error = std::abs(*finite - slope) / (std::abs(slope) + 0.01 * here);
                         worst = std::max(worst, error);
-                        EXPECT_LT(error, 1e-4) << where << " " << nsma::name(price.parameter) << (side > 0 ? " right " : " left ") << *finite << " against " << slope;
+                        EXPECT_LT(error, 1e-4) << where << " " << nsma::name(price.parameter)
+                                               << (side > 0 ? " right " : " left ") << *finite << " against " << slope;
                         ++compared;
                         if (price.slope.kind == nsma::Slope::Kind::one_sided) ++tied;
                     }
@@ -283,13 +300,16 @@ TEST(PriceSpectrum, GreatestEnergiesMoveAsTheirVerticesDo) {
                 for (const double amount : {0.01, 0.1, 0.3}) {
                     for (const Parameter parameter : {Parameter::band, Parameter::penetration, Parameter::adhesion}) {
                         nsma::Relaxation relaxation;
-                        (parameter == Parameter::band ? relaxation.band : parameter == Parameter::penetration ? relaxation.penetration : relaxation.adhesion) = amount;
+                        (parameter == Parameter::band          ? relaxation.band
+                         : parameter == Parameter::penetration ? relaxation.penetration
+                                                               : relaxation.adhesion) = amount;
                         const auto interval = nsma::relaxed_interval(set, set.shift(relaxation));
                         Price price;
                         price.parameter = parameter;
                         const double expected = vertices.greatest(moved_by(price, pattern, amount));
                         if (interval.unbounded) continue;
-                        EXPECT_NEAR(interval.greatest, expected, 1e-8 * expected) << where << " " << nsma::name(parameter) << " " << amount;
+                        EXPECT_NEAR(interval.greatest, expected, 1e-8 * expected)
+                            << where << " " << nsma::name(parameter) << " " << amount;
                         ++compared;
                     }
                 }

@@ -13,7 +13,7 @@ namespace nsma {
 /// `nearest` follows each pattern from level to level (continuation); `min-energy` and
 /// `max-energy` have one answer a pattern and no level.
 /// `keep_going` is asked before each solve; once false the sweep ends and says so.
-[[nodiscard]] SweepSummary sweep(const Scene& scene, const OrbitSolverOptions& options,
-                                 SweepSink& sink, const std::function<bool()>& keep_going);
+[[nodiscard]] SweepSummary sweep(const Scene& scene, const OrbitSolverOptions& options, SweepSink& sink,
+                                 const std::function<bool()>& keep_going);
 
 }  // namespace nsma

@@ -57,8 +57,7 @@ TEST(Scene, DecimalBoundsAreMetExactly) {
 }
 
 TEST(Scene, ContactRangeBoundsIncluded) {
-    const auto patterns =
-        patterns_of(scene_of(10, PeriodSelection{{1.0, 1.2}, std::array<double, 2>{0.3, 0.5}}));
+    const auto patterns = patterns_of(scene_of(10, PeriodSelection{{1.0, 1.2}, std::array<double, 2>{0.3, 0.5}}));
     EXPECT_EQ(patterns.size(), 9U);  // n_T = 10, 11, 12 with p = 3, 4, 5
     for (const auto& pattern : patterns) {
         EXPECT_GE(pattern.contact_steps, 3);

@@ -71,7 +71,8 @@ TEST(Sensitivity, CurvesStartWithThePredictedSlope) {
             if (found < 3) continue;
             ++compared;
             const double slope = (4 * (curve[1] - curve[0]) - (curve[2] - curve[0])) / 2e-4;
-            EXPECT_NEAR(slope, *price.slope.right, 1e-4 * (std::abs(slope) + interval.least));  // second differences of E over steps of 1e-4
+            EXPECT_NEAR(slope, *price.slope.right,
+                        1e-4 * (std::abs(slope) + interval.least));  // second differences of E over steps of 1e-4
         }
     }
     EXPECT_GT(compared, 5);
@@ -117,14 +118,15 @@ TEST(Sensitivity, AblationIsMonotoneAndEndsAtTheVerdict) {
             nsma::PatternOptions options;
             options.prove = false;
             const bool verdict = nsma::pattern_problem(pattern, gap_sign, options).verdict == nsma::Verdict::admissible;
-            EXPECT_EQ(record.survives[7], verdict) << pattern.free_steps << ", " << pattern.contact_steps << ", " << gap_sign;
+            EXPECT_EQ(record.survives[7], verdict)
+                << pattern.free_steps << ", " << pattern.contact_steps << ", " << gap_sign;
             if (gap_sign == 1) {
                 live += record.survives[0] ? 1 : 0;
                 admissible += record.survives[7] ? 1 : 0;
             }
         }
     }
-    EXPECT_EQ(live, 209);       // public counts
+    EXPECT_EQ(live, 209);  // public counts
     EXPECT_EQ(admissible, 35);
 }
 

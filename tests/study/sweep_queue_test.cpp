@@ -154,7 +154,8 @@ TEST(SweepQueue, LevelsOfAStrandFollowOneAnother) {
     Scene scene = scene_of();
     scene.levels.resize(21);
     std::iota(scene.levels.begin(), scene.levels.end(), 1.0);
-    for (const SolverChoice solvers : {SolverChoice::ipopt, SolverChoice::both}) expect_each_unit_once(scene, asking(solvers), 8);
+    for (const SolverChoice solvers : {SolverChoice::ipopt, SolverChoice::both})
+        expect_each_unit_once(scene, asking(solvers), 8);
     expect_each_unit_once(scene, asking(SolverChoice::nlopt), 1);
     scene.objective = Objective::nearest;
     expect_each_unit_once(scene, {}, 21);

@@ -64,7 +64,8 @@ void expect_counts(const SweepSummary& summary, const Recorder& seen) {
     EXPECT_EQ(summary.failed_patterns, patterns(Verdict::failed));
     for (const auto kind : nsma::pattern_kinds) {
         EXPECT_EQ(summary.kinds[static_cast<std::size_t>(kind)],
-                  std::count_if(seen.patterns.begin(), seen.patterns.end(), [&](const auto& record) { return record.kind == kind; }));
+                  std::count_if(seen.patterns.begin(), seen.patterns.end(),
+                                [&](const auto& record) { return record.kind == kind; }));
     }
     EXPECT_EQ(summary.patterns, summary.trivial + summary.inadmissible + summary.admissible + summary.failed_patterns);
     std::map<Verdict, int> levels;

@@ -82,8 +82,7 @@ TEST(Bar, ValidateNamesTheQuantityAndTheValue) {
     EXPECT_THAT(message(Bar{.gap = nan}), testing::StartsWith("gap: expected"));
     EXPECT_THAT(message(Bar{.gap = infinity}), testing::StartsWith("gap: expected"));
     // Finite inputs whose derived quantities are not.
-    EXPECT_THAT(message(Bar{.young_modulus = 1e300, .density = 1e-300}),
-                testing::StartsWith("wave_speed: expected"));
+    EXPECT_THAT(message(Bar{.young_modulus = 1e300, .density = 1e-300}), testing::StartsWith("wave_speed: expected"));
     EXPECT_THAT(message(Bar{.gap = 1e-200}), testing::StartsWith("energy_unit: expected"));
 }
 

@@ -59,8 +59,7 @@ TEST(DenseWfem, RoundTripsOfTheBar) {
         for (int cells = 1; cells <= 8; ++cells) {
             const MatrixXd identity = MatrixXd::Identity(2 * cells, 2 * cells);
             const MatrixXd free = scaled(bar, nsma::dense::free_step_matrix(bar, Mesh{cells}));
-            const MatrixXd contact =
-                scaled(bar, nsma::dense::contact_step_matrix(bar, Mesh{cells}));
+            const MatrixXd contact = scaled(bar, nsma::dense::contact_step_matrix(bar, Mesh{cells}));
             const double rounding = 1e-13;  // up to 32 products of orthogonal matrices
             EXPECT_LT((repeated(free, 2 * cells) + identity).norm(), rounding);
             EXPECT_LT((repeated(free, 4 * cells) - identity).norm(), rounding);
@@ -75,8 +74,7 @@ TEST(DenseWfem, CellStepEqualsTheMatrices) {
     for (const Bar& bar : bars) {
         for (const int cells : {1, 2, 3, 7, 16}) {
             for (const bool contact : {false, true}) {
-                State state =
-                    State::NullaryExpr(2 * cells, [&](Eigen::Index) { return normal(random); });
+                State state = State::NullaryExpr(2 * cells, [&](Eigen::Index) { return normal(random); });
                 state.head(cells) *= bar.impedance();
                 const MatrixXd matrix = contact ? nsma::dense::contact_step_matrix(bar, Mesh{cells})
                                                 : nsma::dense::free_step_matrix(bar, Mesh{cells});
@@ -98,8 +96,7 @@ TEST(DenseWfem, PeriodicityMatrixIsTheRepeatedProduct) {
     const MatrixXd contact = nsma::dense::contact_step_matrix(bar, mesh);
     for (int r = 1; r <= 9; ++r) {
         for (int p = 1; p <= 9; ++p) {
-            const MatrixXd expected =
-                repeated(contact, p) * repeated(free, r) - MatrixXd::Identity(6, 6);
+            const MatrixXd expected = repeated(contact, p) * repeated(free, r) - MatrixXd::Identity(6, 6);
             // z = 1: every entry is a multiple of 1/2 and exact.
             EXPECT_EQ(nsma::dense::periodicity_matrix(bar, mesh, r, p), expected);
         }

@@ -104,8 +104,7 @@ TEST(Marcher, SilentTouchInFreeFlightIsNotContact) {
     // N = 2, dt = 1/2, gap 1. The tip waits at the wall for two steps without force, moves away
     // and comes back: 1 1 1 0 -1 -1 -1 0 1.
     const Bar bar;
-    const MarchReport report =
-        march(bar, Mesh{2}, state_of_waves(bar, {0.0, 0.0, -1.0, -1.0}), 8, 1000);
+    const MarchReport report = march(bar, Mesh{2}, state_of_waves(bar, {0.0, 0.0, -1.0, -1.0}), 8, 1000);
     const double tips[] = {1, 1, 1, 0, -1, -1, -1, 0};
     const bool silent[] = {true, true, false, false, false, false, false, false};
     for (std::size_t n = 0; n < 8; ++n) {
@@ -140,8 +139,7 @@ TEST(Marcher, LastSmallStepToATouchIsNotContactHoweverSmall) {
     const Bar bar;
     for (int digits = 1; digits <= 17; ++digits) {
         const double e = std::pow(10.0, -digits);
-        const MarchReport report =
-            march(bar, Mesh{2}, state_of_waves(bar, {e, -1.0, -1.0, e}), 8, 100);
+        const MarchReport report = march(bar, Mesh{2}, state_of_waves(bar, {e, -1.0, -1.0, e}), 8, 100);
         EXPECT_EQ(report.contact_steps, 0) << e;
         EXPECT_EQ(report.largest_force, 0.0) << e;
         // e is added to 1 and taken off again once, on the way into the queue.
@@ -173,8 +171,7 @@ TEST(Marcher, TensionWithinTheSilentToleranceDoesNotEndContact) {
     const MarchReport noise = march(bar, Mesh{2}, state_of_waves(bar, {1.0, -1e-12, 1.0, -4.0}), 3);
     EXPECT_EQ(contact_flags(noise), (std::vector<bool>{true, true, true}));
     EXPECT_EQ(noise.worst_tension, 0.0);  // it moves as a release, without force
-    const MarchReport release =
-        march(bar, Mesh{2}, state_of_waves(bar, {1.0, -1e-6, 1.0, -4.0}), 3);
+    const MarchReport release = march(bar, Mesh{2}, state_of_waves(bar, {1.0, -1e-6, 1.0, -4.0}), 3);
     EXPECT_EQ(contact_flags(release), (std::vector<bool>{true, false, true}));
     EXPECT_EQ(release.contact_phases, 1);  // n = 2; n = 0 follows contact at n = 2
     EXPECT_EQ(release.worst_tension, 0.0);
@@ -236,18 +233,15 @@ TEST(Marcher, SteelBarGivesTheFiguresOfTheUnitBar) {
     const int cells = 20;
     for (const int period_steps : {63, 70, 79}) {
         const Bar unit;
-        const MarchReport one =
-            march(unit, Mesh{cells}, first_mode(unit, cells, period_steps), period_steps, 10);
+        const MarchReport one = march(unit, Mesh{cells}, first_mode(unit, cells, period_steps), period_steps, 10);
         const Bar bar = steel();
-        const MarchReport two =
-            march(bar, Mesh{cells}, first_mode(bar, cells, period_steps), period_steps, 10);
+        const MarchReport two = march(bar, Mesh{cells}, first_mode(bar, cells, period_steps), period_steps, 10);
         for (std::size_t n = 0; n < one.first_period.size(); ++n) {
             EXPECT_EQ(one.first_period[n].contact, two.first_period[n].contact);
             EXPECT_EQ(one.first_period[n].silent, two.first_period[n].silent);
             // Sums of 40 waves of order d.
             EXPECT_NEAR(one.first_period[n].tip, two.first_period[n].tip / bar.gap, 1e-12);
-            EXPECT_NEAR(one.first_period[n].contact_force,
-                        two.first_period[n].contact_force / bar.force_unit(), 1e-12);
+            EXPECT_NEAR(one.first_period[n].contact_force, two.first_period[n].contact_force / bar.force_unit(), 1e-12);
         }
     }
 }
@@ -335,8 +329,7 @@ TEST(Marcher, ClosedGapOrbitByHand) {
     // -a -a a a a a and any a. Tip 0 -1 -2 -1 0 0 for a = 1, dt = 1/2.
     Bar bar;
     bar.gap = 0.0;
-    const MarchReport report =
-        march(bar, Mesh{2}, state_of_waves(bar, {-1.0, -1.0, 1.0, 1.0}), 6, 1000);
+    const MarchReport report = march(bar, Mesh{2}, state_of_waves(bar, {-1.0, -1.0, 1.0, 1.0}), 6, 1000);
     const double tips[] = {0, -1, -2, -1, 0, 0};
     for (std::size_t n = 0; n < 6; ++n) {
         EXPECT_EQ(report.first_period[n].tip, tips[n]);
@@ -373,10 +366,8 @@ TEST(Marcher, Misuse) {
     EXPECT_THROW((void)march(bar, Mesh{0}, state, 5), std::invalid_argument);
     EXPECT_THROW((void)march(bar, Mesh{3}, state, 0), std::invalid_argument);
     EXPECT_THROW((void)march(bar, Mesh{3}, state, 5, 0), std::invalid_argument);
-    EXPECT_THROW((void)march(bar, Mesh{3}, state, 5, 1, {.touch_tolerance = -1.0}),
-                 std::invalid_argument);
-    EXPECT_THROW((void)march(bar, Mesh{3}, state, 5, 1,
-                             {.silent_tolerance = std::numeric_limits<double>::quiet_NaN()}),
+    EXPECT_THROW((void)march(bar, Mesh{3}, state, 5, 1, {.touch_tolerance = -1.0}), std::invalid_argument);
+    EXPECT_THROW((void)march(bar, Mesh{3}, state, 5, 1, {.silent_tolerance = std::numeric_limits<double>::quiet_NaN()}),
                  std::invalid_argument);
     state[2] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW((void)march(bar, Mesh{3}, state, 5), std::invalid_argument);

@@ -39,8 +39,7 @@ TEST(State, WrongSizesAndNonFiniteValuesAreMisuse) {
     EXPECT_THROW((void)nsma::tip_displacement(bar, mesh, State::Zero(7)), std::invalid_argument);
     EXPECT_THROW(nsma::validate(mesh, State::Zero(3)), std::invalid_argument);
     EXPECT_NO_THROW(nsma::validate(mesh, State::Zero(6)));
-    for (const double bad :
-         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         State state = State::Zero(6);
         state[4] = bad;
         EXPECT_THROW(nsma::validate(mesh, state), std::invalid_argument);

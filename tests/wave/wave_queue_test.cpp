@@ -54,11 +54,9 @@ TEST(WaveQueue, FollowsTheLiteralSchemeThroughRandomContact) {
                 const double stress = state[cells - 1];
                 const double velocity = state[2 * cells - 1];
                 EXPECT_NEAR(queue.arriving(), 0.5 * (velocity - stress / z), rounding);
-                EXPECT_NEAR(queue.contact_force() / (z * bar.area), stress / z - velocity,
-                            rounding);
+                EXPECT_NEAR(queue.contact_force() / (z * bar.area), stress / z - velocity, rounding);
                 EXPECT_NEAR(queue.tip() / length, tip / length, rounding);
-                EXPECT_NEAR(queue.tip() / length, nsma::tip_displacement(bar, mesh, state) / length,
-                            rounding);
+                EXPECT_NEAR(queue.tip() / length, nsma::tip_displacement(bar, mesh, state) / length, rounding);
                 EXPECT_NEAR(queue.energy() / energy, 1.0, rounding);
                 EXPECT_NEAR(nsma::energy(bar, mesh, state) / energy, 1.0, rounding);
                 ASSERT_LT(relative_difference(bar, queue.state(), state), rounding);
@@ -69,8 +67,7 @@ TEST(WaveQueue, FollowsTheLiteralSchemeThroughRandomContact) {
                 if (contact) {
                     queue.step_contact();
                 } else {
-                    EXPECT_NEAR(queue.tip_after_free_step() / length,
-                                (tip + dt * tip_velocity) / length, rounding);
+                    EXPECT_NEAR(queue.tip_after_free_step() / length, (tip + dt * tip_velocity) / length, rounding);
                     queue.step_free();
                 }
                 tip += dt * tip_velocity;
@@ -86,8 +83,7 @@ TEST(WaveQueue, StateToQueueAndBack) {
         for (const int cells : meshes) {
             const State state = random_state(bar, cells, random);
             // One sum and one difference of numbers of order 1.
-            EXPECT_LT(relative_difference(bar, WaveQueue(bar, Mesh{cells}, state).state(), state),
-                      4e-15);
+            EXPECT_LT(relative_difference(bar, WaveQueue(bar, Mesh{cells}, state).state(), state), 4e-15);
         }
     }
 }

@@ -24,8 +24,8 @@ struct FormBound {
 };
 
 /// Upper bound on |beta|^2 over the admissible set: columns in this order with partial sums s_k of w_c beta_c/delta,
-/// 0 = s_0, s_n = 1, and bounds of s_k (forms s_k, then -s_k, k = 1..n-1). A convex sum over steps is greatest where each
-/// s_k is at a bound, which dynamic programming decides.
+/// 0 = s_0, s_n = 1, and bounds of s_k (forms s_k, then -s_k, k = 1..n-1). A convex sum over steps is greatest where
+/// each s_k is at a bound, which dynamic programming decides.
 struct GreatestProof {
     std::vector<int> chain;
     std::vector<FormBound> chain_bounds;
@@ -37,8 +37,8 @@ struct Certificate {
     Pattern pattern;
     int gap_sign = 1;
     enum class Claim { trivial, empty, nonempty } claim = Claim::trivial;
-    /// Nonempty: `contact` where the point of least energy (closed gap: the ray) presses and leaves the wall, `free` where
-    /// no column has a contact step, `stuck` where none has a free one.
+    /// Nonempty: `contact` where the point of least energy (closed gap: the ray) presses and leaves the wall, `free`
+    /// where no column has a contact step, `stuck` where none has a free one.
     std::optional<PatternKind> kind;
 
     /// gap != 0: y of the projection rho of delta w on the cone of COND1 and COND3. rho = 0

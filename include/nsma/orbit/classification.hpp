@@ -14,7 +14,8 @@ struct Classification {
     bool forceless = false;        ///< every contact step is silent
     bool full_support = false;     ///< every live amplitude is nonzero
     double tolerance = 0.0;        ///< the relative tolerance used
-    std::optional<MotionLabel> same_motion_as;  ///< its least label, where that is another pattern or shift; its reversal alone is none
+    std::optional<MotionLabel>
+        same_motion_as;  ///< its least label, where that is another pattern or shift; its reversal alone is none
 };
 
 /// Zero means below `tolerance` relative to the largest amplitude (waves and forces) or, for

@@ -21,8 +21,8 @@ struct Conditions {
     enum class Sign : std::uint8_t { free, nonnegative, nonpositive, zero };
 
     Kernel kernel;
-    int gap_sign = 1;                    ///< delta
-    std::vector<Sign> bound_of;          ///< COND3 per column; size m; `zero` on a sign conflict
+    int gap_sign = 1;            ///< delta
+    std::vector<Sign> bound_of;  ///< COND3 per column; size m; `zero` on a sign conflict
 
     [[nodiscard]] int dimension() const { return kernel.dimension(); }
     [[nodiscard]] double energy_factor() const;  ///< 4 N^2/g

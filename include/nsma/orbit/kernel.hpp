@@ -15,10 +15,10 @@ namespace nsma {
 /// Source: [1] Eq. (4)-(5), solved by cycles.
 struct Kernel {
     Pattern pattern;
-    int classes = 0;                  ///< g
-    std::vector<std::int8_t> sign;    ///< eps_n in {+1, -1, 0}, n = 0..n_T-1
-    std::vector<int> amplitude_of;    ///< class -> column of alpha, -1 for a dead class; size g
-    std::vector<int> class_of;        ///< column of alpha -> class; size m, increasing
+    int classes = 0;                ///< g
+    std::vector<std::int8_t> sign;  ///< eps_n in {+1, -1, 0}, n = 0..n_T-1
+    std::vector<int> amplitude_of;  ///< class -> column of alpha, -1 for a dead class; size g
+    std::vector<int> class_of;      ///< column of alpha -> class; size m, increasing
 
     [[nodiscard]] int dimension() const { return static_cast<int>(class_of.size()); }  ///< m
     /// Column of alpha that step n carries, or -1; n in [0, n_T).

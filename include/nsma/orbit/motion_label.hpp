@@ -9,9 +9,9 @@
 
 namespace nsma {
 
-/// The least pattern, by n_T then r, whose COND1-3 a motion meets: its shortest period, with contact over the longest rest
-/// at the wall that holds every step with force. One motion carries several labels (r, p) where it rests on the wall
-/// without force or repeats itself within n_T; it, its time shifts and their reversals share one least label.
+/// The least pattern, by n_T then r, whose COND1-3 a motion meets: its shortest period, with contact over the longest
+/// rest at the wall that holds every step with force. One motion carries several labels (r, p) where it rests on the
+/// wall without force or repeats itself within n_T; it, its time shifts and their reversals share one least label.
 struct MotionLabel {
     int free_steps = 1;
     int contact_steps = 1;
@@ -31,8 +31,9 @@ struct LabelledMotion {
 /// Zero and equal mean within `tolerance` of the largest wave, or of the displacement scale. Absent for rest.
 [[nodiscard]] std::optional<LabelledMotion> least_label(const Orbit& orbit, double tolerance = 1e-9);
 
-/// Numbers for the label and the waves, rounded to 1e-7 of the largest on two grids half a step apart: a motion shares at
-/// least one of them with itself under any label, shift or reversal, and with no other that differs by more than that.
+/// Numbers for the label and the waves, rounded to 1e-7 of the largest on two grids half a step apart: a motion shares
+/// at least one of them with itself under any label, shift or reversal, and with no other that differs by more than
+/// that.
 [[nodiscard]] std::array<std::uint64_t, 2> fingerprints(const LabelledMotion& motion);
 
 }  // namespace nsma

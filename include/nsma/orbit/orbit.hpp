@@ -20,13 +20,13 @@ struct Orbit {
 /// Throws std::invalid_argument unless the bar is valid and beta has size m and is finite.
 [[nodiscard]] Orbit make_orbit(const Bar& bar, const Kernel& kernel, const Eigen::VectorXd& beta);
 
-[[nodiscard]] Eigen::VectorXd amplitudes(const Orbit& orbit);         ///< alpha [m/s], size m
-[[nodiscard]] State initial_state(const Orbit& orbit);                ///< Q0, size 2N
-[[nodiscard]] double period(const Orbit& orbit);                      ///< T [s]
-[[nodiscard]] double energy(const Orbit& orbit);                      ///< E [J]
-[[nodiscard]] double energy_ratio(const Orbit& orbit);                ///< E/energy unit of the bar
-[[nodiscard]] Eigen::VectorXd tip_displacement(const Orbit& orbit);   ///< x_n [m], n = 0..n_T
-[[nodiscard]] Eigen::VectorXd contact_force(const Orbit& orbit);      ///< lambda_n [N], n = 0..n_T-1
+[[nodiscard]] Eigen::VectorXd amplitudes(const Orbit& orbit);        ///< alpha [m/s], size m
+[[nodiscard]] State initial_state(const Orbit& orbit);               ///< Q0, size 2N
+[[nodiscard]] double period(const Orbit& orbit);                     ///< T [s]
+[[nodiscard]] double energy(const Orbit& orbit);                     ///< E [J]
+[[nodiscard]] double energy_ratio(const Orbit& orbit);               ///< E/energy unit of the bar
+[[nodiscard]] Eigen::VectorXd tip_displacement(const Orbit& orbit);  ///< x_n [m], n = 0..n_T
+[[nodiscard]] Eigen::VectorXd contact_force(const Orbit& orbit);     ///< lambda_n [N], n = 0..n_T-1
 
 /// Space-time field over one period: stress and velocity of each cell (N x n_T), column n is
 /// time step n, row i cell i + 1 counted from the fixed end.

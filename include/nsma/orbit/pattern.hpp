@@ -13,9 +13,9 @@ struct Pattern {
     int contact_steps = 1;  ///< p
 
     [[nodiscard]] int period_steps() const { return free_steps + contact_steps; }  ///< n_T
-    [[nodiscard]] int class_count() const;         ///< g = gcd(2N, n_T)
-    [[nodiscard]] double frequency_ratio() const;  ///< omega/omega_1 = 4N/n_T
-    [[nodiscard]] double period_ratio() const;     ///< T/tau = n_T/N
+    [[nodiscard]] int class_count() const;                                         ///< g = gcd(2N, n_T)
+    [[nodiscard]] double frequency_ratio() const;                                  ///< omega/omega_1 = 4N/n_T
+    [[nodiscard]] double period_ratio() const;                                     ///< T/tau = n_T/N
 
     bool operator==(const Pattern&) const = default;
 };

@@ -18,10 +18,11 @@ enum class PatternKind : std::uint8_t {
 inline constexpr std::array pattern_kinds{PatternKind::contact, PatternKind::free, PatternKind::stuck};
 [[nodiscard]] std::string_view name(PatternKind kind);  ///< "contact", "free", "stuck"
 
-/// The kind, from the kernel alone, O(log N); absent for a trivial kernel. With g = gcd(2N, n_T) the live classes all have
-/// the same even number f of free steps among their n_T/g steps. f = n_T/g: no contact step carries a wave, so there is no
-/// force. f = 0: no step of the flight carries a wave, so the tip does not move. Otherwise every live class presses in some
-/// step and moves the tip in another, so that every admissible orbit but rest does both. No condition is needed to decide.
+/// The kind, from the kernel alone, O(log N); absent for a trivial kernel. With g = gcd(2N, n_T) the live classes all
+/// have the same even number f of free steps among their n_T/g steps. f = n_T/g: no contact step carries a wave, so
+/// there is no force. f = 0: no step of the flight carries a wave, so the tip does not move. Otherwise every live class
+/// presses in some step and moves the tip in another, so that every admissible orbit but rest does both. No condition
+/// is needed to decide.
 [[nodiscard]] std::optional<PatternKind> pattern_kind(const Pattern& pattern);
 
 }  // namespace nsma

@@ -15,7 +15,7 @@ struct Violations {
     /// max (lambda_n)+ / largest |lambda|; where the orbit has no force (below 1e-12 of what its
     /// largest wave could exert) / 2 z S max|b|, so that noise is not divided by noise.
     double cond3 = 0.0;
-    double energy = 0.0;       ///< |E/E_unit - level| / level; 0 when no level is asked
+    double energy = 0.0;  ///< |E/E_unit - level| / level; 0 when no level is asked
 
     [[nodiscard]] double worst() const;
 };
@@ -23,7 +23,7 @@ struct Violations {
 /// Verdict of the independent marcher on an orbit.
 struct Replay {
     Violations violations;
-    MarchReport march;      ///< what the marcher saw, its own decisions
+    MarchReport march;         ///< what the marcher saw, its own decisions
     bool same_labels = false;  ///< contact seen exactly in the labelled steps, silent ones aside
     bool accepted = false;     ///< worst violation, march defect <= tolerance and same_labels
 };
@@ -35,7 +35,7 @@ inline constexpr double replay_tolerance = 1e-9;
 /// condition, and with the marcher, which decides contact by itself. Displacement scale: |d|, or
 /// for a closed gap the largest |x_n|. Throws std::invalid_argument unless level > 0, periods >= 1
 /// and tolerance >= 0.
-[[nodiscard]] Replay replay(const Orbit& orbit, std::optional<double> level = std::nullopt,
-                            int periods = 1, double tolerance = replay_tolerance);
+[[nodiscard]] Replay replay(const Orbit& orbit, std::optional<double> level = std::nullopt, int periods = 1,
+                            double tolerance = replay_tolerance);
 
 }  // namespace nsma

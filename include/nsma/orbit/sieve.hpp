@@ -16,8 +16,8 @@ enum class Finding : std::uint8_t {
     penetrates,     ///< a COND1 row is positive for every motion COND3 allows
     admissible      ///< some motion meets COND1-3
 };
-inline constexpr std::array findings{Finding::trivial, Finding::sign_conflict, Finding::wrong_side,
-                                     Finding::penetrates, Finding::admissible};
+inline constexpr std::array findings{Finding::trivial, Finding::sign_conflict, Finding::wrong_side, Finding::penetrates,
+                                     Finding::admissible};
 
 struct Sieved {
     Finding finding = Finding::trivial;
@@ -25,7 +25,7 @@ struct Sieved {
     /// Admissible, gap != 0: the interval of E/E_g, quotients of integers; else 0.
     double energy_least = 0;
     double energy_greatest = 0;
-    bool unbounded = false;    ///< admissible at a closed gap: a cone
+    bool unbounded = false;  ///< admissible at a closed gap: a cone
 };
 
 /// Verdicts on COND1-3 without a linear program. The classes mod g = gcd(2N, n_T) all walk the

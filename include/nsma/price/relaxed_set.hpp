@@ -49,9 +49,7 @@ struct RelaxedSet {
     Eigen::VectorXd contact;              ///< size m: COND2's row x_0
 
     [[nodiscard]] int dimension() const { return kernel.dimension(); }
-    [[nodiscard]] double energy(const Eigen::VectorXd& beta) const {
-        return energy_factor * beta.squaredNorm();
-    }
+    [[nodiscard]] double energy(const Eigen::VectorXd& beta) const { return energy_factor * beta.squaredNorm(); }
     [[nodiscard]] Eigen::VectorXd limits(const Shift& shift) const;  ///< size R
     [[nodiscard]] Shift shift(const Relaxation& relaxation) const;
 };

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "nsma/price/relaxed_set.hpp"
 #include "nsma/set/objective.hpp"
+#include "nsma/price/relaxed_set.hpp"
 
 namespace nsma {
 
@@ -45,22 +45,21 @@ class OptimumAnalysis;
 /// linear program where they are not unique. Where the level is an end of the energy interval
 /// that end's own derivative decides whether there is an orbit, and a projection on the critical
 /// cone gives the root of the square-root branch. What lies between `active` and `inactive` is
-/// neither, and refused. Where several optima tie (time shifts and reversals of an orbit that rests at the wall, permuted
-/// peaks) the right derivative is the least and the left one the greatest over all of them. `set` must outlive this.
-/// Source: J. F. Bonnans, A. Shapiro, SIAM Review 40 (1998) 228-264.
+/// neither, and refused. Where several optima tie (time shifts and reversals of an orbit that rests at the wall,
+/// permuted peaks) the right derivative is the least and the left one the greatest over all of them. `set` must outlive
+/// this. Source: J. F. Bonnans, A. Shapiro, SIAM Review 40 (1998) 228-264.
 class OptimumSensitivity {
 public:
     struct Options {
-        double active = 1e-9;     ///< scaled slack, multiplier or singular value that is zero
-        double inactive = 1e-6;   ///< and from which on it is not
+        double active = 1e-9;    ///< scaled slack, multiplier or singular value that is zero
+        double inactive = 1e-6;  ///< and from which on it is not
     };
 
     /// `beta` is an optimum at `level` (absent for min_energy only). Throws std::invalid_argument
     /// on a wrong size, on max_energy with a level or a missing level. For max_energy (no level)
     /// beta is a vertex; `ties` are further optima of the same value, for max_energy all other vertices of it.
     OptimumSensitivity(const RelaxedSet& set, Objective objective, std::optional<double> level,
-                       const Eigen::VectorXd& beta, const Options& options,
-                       const Eigen::VectorXd& reference = {},
+                       const Eigen::VectorXd& beta, const Options& options, const Eigen::VectorXd& reference = {},
                        const std::vector<Eigen::VectorXd>& ties = {});
     OptimumSensitivity(const RelaxedSet& set, Objective objective, std::optional<double> level,
                        const Eigen::VectorXd& beta)
@@ -71,10 +70,10 @@ public:
 
     /// Empty, or why nothing can be said: not stationary, a row neither active nor inactive.
     [[nodiscard]] const std::string& refusal() const;
-    [[nodiscard]] double value() const;                  ///< objective, as reported
-    [[nodiscard]] const Eigen::VectorXd& beta() const;   ///< polished
-    [[nodiscard]] bool nondegenerate() const;  ///< independent active rows, positive multipliers
-    [[nodiscard]] int tied() const;            ///< optima of this value that symmetries give, this one included; 0: too many
+    [[nodiscard]] double value() const;                 ///< objective, as reported
+    [[nodiscard]] const Eigen::VectorXd& beta() const;  ///< polished
+    [[nodiscard]] bool nondegenerate() const;           ///< independent active rows, positive multipliers
+    [[nodiscard]] int tied() const;  ///< optima of this value that symmetries give, this one included; 0: too many
     [[nodiscard]] std::vector<int> active_rows() const;  ///< of the set
     /// Relative to 1 + |grad f|, scaled; absent where there are no multipliers.
     [[nodiscard]] std::optional<double> kkt_residual() const;

@@ -14,8 +14,8 @@ struct Proof {
     [[nodiscard]] bool exact_greatest() const;  ///< attained = bound, or unbounded
 };
 
-/// Writes the certificate of a pattern from its admissible set: every number is recomputed in fractions, and check() has
-/// the last word, so that rounding can lose a proof but never forge one.
+/// Writes the certificate of a pattern from its admissible set: every number is recomputed in fractions, and check()
+/// has the last word, so that rounding can lose a proof but never forge one.
 [[nodiscard]] Proof prove(const Kernel& kernel, const AdmissibleSet& set);
 
 }  // namespace nsma

@@ -11,7 +11,7 @@ namespace nsma {
 /// the same in every run. Numbers in full precision; null where there is no value, never NaN.
 /// `alpha` in m/s, `tip_displacement` in units of |d| (metres for a closed gap),
 /// `contact_force` in N.
-[[nodiscard]] std::string orbit_json(const OrbitAnswer& answer, const Bar& bar,
-                                     bool with_seconds = true, int indent = 2);
+[[nodiscard]] std::string orbit_json(const OrbitAnswer& answer, const Bar& bar, bool with_seconds = true,
+                                     int indent = 2);
 
 }  // namespace nsma

@@ -36,7 +36,7 @@ struct SolverRun {
     double objective = 0;  ///< recomputed after polish; null in reports unless usable
     double violation = 0;  ///< largest constraint violation of the raw answer, recomputed
     int iterations = 0;
-    double seconds = 0;    ///< wall time of the call
+    double seconds = 0;  ///< wall time of the call
 };
 
 /// The two solvers against each other.
@@ -46,16 +46,17 @@ enum class Agreement {
     different_optimum,  ///< both usable, objectives differ
     one_failed,
     both_failed,
-    single              ///< only one solver was asked for, and it is usable
+    single  ///< only one solver was asked for, and it is usable
 };
 [[nodiscard]] std::string_view name(Agreement agreement);
 
 /// How far the kept orbit is known to be the best one. Objective values as reported.
 struct Optimality {
-    std::optional<double> lower_bound;  ///< proved: the closed form's own value, or weak duality in floating point; absent: none
-    double gap = 0;          ///< (objective - lower_bound)/|objective|; meaningless without a bound
-    bool global = false;     ///< gap within the agreement tolerance
-    double kkt_residual = 0; ///< relative, from our own multipliers; 0 for closed forms
+    std::optional<double>
+        lower_bound;          ///< proved: the closed form's own value, or weak duality in floating point; absent: none
+    double gap = 0;           ///< (objective - lower_bound)/|objective|; meaningless without a bound
+    bool global = false;      ///< gap within the agreement tolerance
+    double kkt_residual = 0;  ///< relative, from our own multipliers; 0 for closed forms
 };
 
 /// The answer for one pattern, one objective and, unless the least-energy orbit is asked, one
@@ -65,27 +66,29 @@ struct OrbitAnswer {
     int gap_sign = 1;
     int kernel_dimension = 0;
     Verdict verdict = Verdict::failed;
-    std::optional<PatternKind> kind;       ///< of an admissible pattern
-    std::string reason;                    ///< one line; empty when there is nothing to say
+    std::optional<PatternKind> kind;  ///< of an admissible pattern
+    std::string reason;               ///< one line; empty when there is nothing to say
     EnergyInterval interval;
     bool verdict_proved = false;           ///< by an exact certificate, or by the replayed orbit
     std::optional<Optimality> optimality;  ///< of the kept orbit
     std::optional<double> level;           ///< the level asked, in energy units
     Objective objective = Objective::least_shock;
-    std::optional<double> objective_value; ///< nondimensional, of the kept orbit
-    Eigen::VectorXd reference;             ///< `nearest`: the window it was measured against
+    std::optional<double> objective_value;       ///< nondimensional, of the kept orbit
+    Eigen::VectorXd reference;                   ///< `nearest`: the window it was measured against
     std::optional<double> objective_difference;  ///< relative gap between the two solvers
-    std::string method;                    ///< "closed-form", "ipopt", "nlopt-slsqp", "segment"...
-    std::optional<Orbit> orbit;            ///< present if and only if the verdict is admissible
-    std::optional<double> energy;          ///< E/E_unit of the kept orbit
+    std::string method;                          ///< "closed-form", "ipopt", "nlopt-slsqp", "segment"...
+    std::optional<Orbit> orbit;                  ///< present if and only if the verdict is admissible
+    std::optional<double> energy;                ///< E/E_unit of the kept orbit
     std::optional<Replay> replay;
     std::optional<Classification> classification;
-    std::vector<SolverRun> solvers;        ///< the best run of each solver first, then the others
+    std::vector<SolverRun> solvers;  ///< the best run of each solver first, then the others
     Agreement agreement = Agreement::not_needed;
     double seconds = 0;
 };
 
 /// Whether the orbit of an answer is proved the best of its pattern at its level.
-[[nodiscard]] inline bool proved_best(const OrbitAnswer& answer) { return answer.optimality && answer.optimality->global; }
+[[nodiscard]] inline bool proved_best(const OrbitAnswer& answer) {
+    return answer.optimality && answer.optimality->global;
+}
 
 }  // namespace nsma

@@ -3,10 +3,10 @@
 #include <memory>
 #include <optional>
 
-#include "nsma/set/admissible_set.hpp"
-#include "nsma/search/answer.hpp"
-#include "nsma/proof/prove.hpp"
 #include "nsma/numerics/solver_options.hpp"
+#include "nsma/set/admissible_set.hpp"
+#include "nsma/proof/prove.hpp"
+#include "nsma/search/answer.hpp"
 
 namespace nsma {
 
@@ -28,8 +28,7 @@ struct PatternOptions {
 
 /// Decides one pattern for a gap of the given sign. Throws std::invalid_argument on a bad
 /// pattern.
-[[nodiscard]] PatternProblem pattern_problem(const Pattern& pattern, int gap_sign,
-                                             const PatternOptions& options = {});
+[[nodiscard]] PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const PatternOptions& options = {});
 
 enum class SolverChoice {
     ipopt,
@@ -74,8 +73,7 @@ public:
 
     /// Throws std::invalid_argument on a level that is not finite and > 0, a reference or start
     /// of a wrong size, or a problem made for another gap sign; any other failure is in the answer.
-    [[nodiscard]] OrbitAnswer solve(const Bar& bar, const PatternProblem& problem,
-                                    const OrbitRequest& request);
+    [[nodiscard]] OrbitAnswer solve(const Bar& bar, const PatternProblem& problem, const OrbitRequest& request);
 
     /// Whether no orbit of such a pattern can have this energy, or none is known to: nothing is solved for it.
     [[nodiscard]] bool outside(const EnergyInterval& interval, double level) const;

@@ -14,8 +14,8 @@ namespace nsma {
 /// closed gap) over the reduced variables gamma, and its attainable energies.
 struct AdmissibleSet {
     enum class Status { empty, nonempty, failed };
-    /// One contact phase leaves a simplex (every reduced variable has a sign and no COND1 row is left) or a chain (none has
-    /// one; partial sums between 0 and the gap). `none`: no variable is left, or COND3 alone forbids all.
+    /// One contact phase leaves a simplex (every reduced variable has a sign and no COND1 row is left) or a chain (none
+    /// has one; partial sums between 0 and the gap). `none`: no variable is left, or COND3 alone forbids all.
     enum class Shape { none, simplex, chain };
 
     Reduction reduction;
@@ -24,8 +24,8 @@ struct AdmissibleSet {
     std::string reason;  ///< one line: what decided
     /// Nonempty, gap != 0: the point of least energy, exact to rounding; size n.
     Eigen::VectorXd least;
-    /// Nonempty: all vertices of the greatest energy first, then of a chain some others (for a closed gap the directions of
-    /// unit norm).
+    /// Nonempty: all vertices of the greatest energy first, then of a chain some others (for a closed gap the
+    /// directions of unit norm).
     std::vector<Eigen::VectorXd> vertices;
     /// A direction along which P is unbounded (for a closed gap: an admissible one); empty size when there is none.
     Eigen::VectorXd ray;

@@ -12,7 +12,7 @@ struct EnergyInterval {
     std::optional<double> greatest;  ///< greatest energy attained; absent when unbounded or unknown
     std::optional<double> bound;     ///< proved upper bound of the energy; absent when there is none
     bool unbounded = false;
-    std::string least_exact;         ///< "12/11"; empty without a proof
+    std::string least_exact;  ///< "12/11"; empty without a proof
     std::string greatest_exact;
 };
 

@@ -12,15 +12,15 @@ namespace nsma {
 
 /// What presolve took away, counted by the argument that took it.
 struct RemovalCounts {
-    int dead_classes = 0;       ///< classes whose signs do not close up (zero in the kernel)
-    int sign_conflicts = 0;     ///< live classes that COND3 bounds from both sides
-    int forced_zero = 0;        ///< columns that a COND1 row of nonnegative terms forces to zero
-    int contact_duplicates = 0; ///< COND2 rows equal to the one kept (p + 1, with row 0)
-    int force_rows = 0;         ///< COND3 rows turned into bounds
-    int silent_rows = 0;        ///< COND1 rows equal to the row before (nothing arrived)
-    int implied_rows = 0;       ///< COND1 rows that a neighbour or the bounds imply
-    int duplicate_rows = 0;     ///< COND1 rows equal to an earlier kept row
-    int dominated_rows = 0;     ///< COND1 rows implied by one other kept row and the bounds
+    int dead_classes = 0;        ///< classes whose signs do not close up (zero in the kernel)
+    int sign_conflicts = 0;      ///< live classes that COND3 bounds from both sides
+    int forced_zero = 0;         ///< columns that a COND1 row of nonnegative terms forces to zero
+    int contact_duplicates = 0;  ///< COND2 rows equal to the one kept (p + 1, with row 0)
+    int force_rows = 0;          ///< COND3 rows turned into bounds
+    int silent_rows = 0;         ///< COND1 rows equal to the row before (nothing arrived)
+    int implied_rows = 0;        ///< COND1 rows that a neighbour or the bounds imply
+    int duplicate_rows = 0;      ///< COND1 rows equal to an earlier kept row
+    int dominated_rows = 0;      ///< COND1 rows implied by one other kept row and the bounds
 };
 
 /// A column fixed to zero because the COND1 row of this step has only nonnegative terms.
@@ -34,17 +34,17 @@ struct ForcedZero {
 ///   contact_row . gamma = delta,   rows . gamma <= 0,   gamma_j >= 0 for bounded j.
 /// A COND1 row x_n <= delta minus COND2 is twice the partial sum of eps_k beta over k < n.
 struct Reduction {
-    int gap_sign = 1;                 ///< delta
-    double energy_factor = 0;         ///< E/E_unit = energy_factor |gamma|^2
-    int kernel_dimension = 0;         ///< m, the size of beta
-    std::vector<int> column;          ///< reduced variable -> column of beta
-    std::vector<std::int8_t> flip;    ///< +1 or -1
-    std::vector<std::uint8_t> bounded;///< 1: gamma_j >= 0; 0: no contact step, free
-    Eigen::VectorXi contact_row;      ///< size n
-    Eigen::MatrixXi rows;             ///< kept COND1 rows, R x n
-    std::vector<int> row_step;        ///< n of each kept row, 1 <= n < r
+    int gap_sign = 1;                   ///< delta
+    double energy_factor = 0;           ///< E/E_unit = energy_factor |gamma|^2
+    int kernel_dimension = 0;           ///< m, the size of beta
+    std::vector<int> column;            ///< reduced variable -> column of beta
+    std::vector<std::int8_t> flip;      ///< +1 or -1
+    std::vector<std::uint8_t> bounded;  ///< 1: gamma_j >= 0; 0: no contact step, free
+    Eigen::VectorXi contact_row;        ///< size n
+    Eigen::MatrixXi rows;               ///< kept COND1 rows, R x n
+    std::vector<int> row_step;          ///< n of each kept row, 1 <= n < r
     RemovalCounts removed;
-    std::vector<ForcedZero> forced;   ///< in the order they were found
+    std::vector<ForcedZero> forced;  ///< in the order they were found
     /// Nonempty: the set is empty by an argument in integers (for a closed gap: only rest).
     std::string empty_because;
 

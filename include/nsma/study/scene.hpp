@@ -7,10 +7,10 @@
 #include <variant>
 #include <vector>
 
-#include "nsma/orbit/pattern_kind.hpp"
-#include "nsma/set/objective.hpp"
 #include "nsma/wave/bar.hpp"
 #include "nsma/wave/mesh.hpp"
+#include "nsma/orbit/pattern_kind.hpp"
+#include "nsma/set/objective.hpp"
 
 namespace nsma {
 

@@ -49,7 +49,7 @@ struct MarchReport {
 /// likewise. Knows nothing of patterns, kernels or programs: it is the judge of their answers.
 /// O(1) a step. Source: [1] p. 1 (floating boundary conditions). Throws std::invalid_argument on
 /// a bad size, NaN, period_steps < 1, periods < 1 or a negative tolerance.
-[[nodiscard]] MarchReport march(const Bar& bar, const Mesh& mesh, const State& initial_state,
-                                int period_steps, int periods = 1, const MarchOptions& options = {});
+[[nodiscard]] MarchReport march(const Bar& bar, const Mesh& mesh, const State& initial_state, int period_steps,
+                                int periods = 1, const MarchOptions& options = {});
 
 }  // namespace nsma

@@ -9,9 +9,9 @@ namespace nsma {
 struct Mesh {
     int cells = 1;  ///< N, >= 1
 
-    [[nodiscard]] int window() const { return 2 * cells; }        ///< 2N: steps of one round trip
-    [[nodiscard]] double cell_length(const Bar& bar) const;       ///< dx = L/N [m]
-    [[nodiscard]] double time_step(const Bar& bar) const;         ///< dt = dx/c [s]
+    [[nodiscard]] int window() const { return 2 * cells; }   ///< 2N: steps of one round trip
+    [[nodiscard]] double cell_length(const Bar& bar) const;  ///< dx = L/N [m]
+    [[nodiscard]] double time_step(const Bar& bar) const;    ///< dt = dx/c [s]
 };
 
 /// Largest N accepted by validate(): products such as 4 N^2 must stay exact in 64 bits.

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "report/chart_blocks.hpp"
-#include "report/gnuplot.hpp"
 #include "accuracy_folder.hpp"
 #include "stability_charts.hpp"
+#include "report/chart_blocks.hpp"
+#include "report/gnuplot.hpp"
 
 namespace nsma {
 namespace {
@@ -35,20 +35,22 @@ constexpr const char* log_axes =
     "set border 3 lc rgb '#333333'\nset grid xtics ytics lc rgb '#e4e4e4' lt 1\nunset key\n";
 
 // A panel that shows nothing but the legend of the marks drawn elsewhere.
-std::string legend(const std::vector<std::pair<std::string, std::string>>& entries, double bottom, double top, int rows) {
-    std::string text = frame(0.02, 0.98, bottom, top) +
-                       "unset title\nunset xlabel\nunset ylabel\nunset border\nunset xtics\nunset ytics\nunset grid\n"
-                       "unset logscale\nset xrange [0:1]\nset yrange [0:1]\n" +
-                       fmt::format("set key center center vertical maxrows {} Left reverse samplen 2.5 width -2 font ',11'\nplot ", rows);
+std::string legend(const std::vector<std::pair<std::string, std::string>>& entries, double bottom, double top,
+                   int rows) {
+    std::string text =
+        frame(0.02, 0.98, bottom, top) +
+        "unset title\nunset xlabel\nunset ylabel\nunset border\nunset xtics\nunset ytics\nunset grid\n"
+        "unset logscale\nset xrange [0:1]\nset yrange [0:1]\n" +
+        fmt::format("set key center center vertical maxrows {} Left reverse samplen 2.5 width -2 font ',11'\nplot ",
+                    rows);
     for (std::size_t i = 0; i < entries.size(); ++i) {
-        text += fmt::format("{}NaN with {} title {}", i == 0 ? "" : ", ", entries[i].second, gnuplot_text(entries[i].first));
+        text += fmt::format("{}NaN with {} title {}", i == 0 ? "" : ", ", entries[i].second,
+                            gnuplot_text(entries[i].first));
     }
     return text + "\n";
 }
 
-std::string program_label(const ProgramRecord& record) {
-    return record.method + (record.warm ? ", warm start" : "");
-}
+std::string program_label(const ProgramRecord& record) { return record.method + (record.warm ? ", warm start" : ""); }
 
 // The shape tells the method; filled marks are of certified answers only.
 std::string program_style(const std::string& label, bool certified) {
@@ -82,7 +84,8 @@ std::string stairs(const std::vector<const ProgramRecord*>& front, double right)
     double least = 30;
     for (const auto* record : front) {
         if (drawn_error(*record) >= least) continue;
-        rows += fmt::format("{} {}\n{} {}\n", record->seconds.median, least, record->seconds.median, drawn_error(*record));
+        rows +=
+            fmt::format("{} {}\n{} {}\n", record->seconds.median, least, record->seconds.median, drawn_error(*record));
         least = drawn_error(*record);
     }
     return rows.empty() ? rows : rows + fmt::format("{} {}\n", right, least);
@@ -102,31 +105,43 @@ Chart program_chart(const AccuracyResults& results) {
         slowest = std::max(slowest, record.seconds.high);
         fastest = std::min(fastest, std::max(record.seconds.low, 1e-7));
     }
-    chart.commands += fmt::format("set multiplot title 'One orbit at a given energy: CPU time against error, by number m of amplitudes' font ',15'\n"
-                                  "set xrange [{}:{}]\nset yrange [2e-16:30]\n", fastest / 2, slowest * 2);
+    chart.commands += fmt::format(
+        "set multiplot title 'One orbit at a given energy: CPU time against error, by number m of amplitudes' font "
+        "',15'\n"
+        "set xrange [{}:{}]\nset yrange [2e-16:30]\n",
+        fastest / 2, slowest * 2);
     for (std::size_t k = 0; k < sizes.size(); ++k) {
         const std::string suffix = fmt::format("-{}", sizes[k]);
-        add_block(chart, "certified-front" + suffix, stairs(pareto_front(results.programs, sizes[k], true), slowest * 2));
+        add_block(chart, "certified-front" + suffix,
+                  stairs(pareto_front(results.programs, sizes[k], true), slowest * 2));
         add_block(chart, "front" + suffix, stairs(pareto_front(results.programs, sizes[k]), slowest * 2));
         const double left = k % 2 == 0 ? 0.10 : 0.59;
         const double top = k < 2 ? 0.93 : 0.55;
         chart.commands += frame(left, left + 0.39, top - 0.30, top);
-        chart.commands += fmt::format("set title 'm = {}' offset 0,-0.7\nset xlabel '{}' offset 0,0.5\n"
-                                      "set ylabel 'largest error' offset 1,0\n", sizes[k], k + 2 < sizes.size() ? "" : "CPU time of a run (s)");
-        std::string plot = fmt::format("plot '{}.dat' index 'certified-front{}' using 1:2 with {}, '' index 'front{}' using 1:2 with {}",
-                                       chart.name, suffix, certified_front, suffix, any_front);
+        chart.commands += fmt::format(
+            "set title 'm = {}' offset 0,-0.7\nset xlabel '{}' offset 0,0.5\n"
+            "set ylabel 'largest error' offset 1,0\n",
+            sizes[k], k + 2 < sizes.size() ? "" : "CPU time of a run (s)");
+        std::string plot = fmt::format(
+            "plot '{}.dat' index 'certified-front{}' using 1:2 with {}, '' index 'front{}' using 1:2 with {}",
+            chart.name, suffix, certified_front, suffix, any_front);
         for (const bool certified : {false, true}) {
             for (auto label = labels.rbegin(); label != labels.rend(); ++label) {  // the first ones on top
                 std::string rows;
                 for (const auto& record : results.programs) {
-                    if (record.size != sizes[k] || program_label(record) != *label || all_certified(record) != certified) continue;
-                    rows += fmt::format("{} {} {} {}\n", record.seconds.median, drawn_error(record), record.seconds.low, record.seconds.high);
+                    if (record.size != sizes[k] || program_label(record) != *label ||
+                        all_certified(record) != certified)
+                        continue;
+                    rows += fmt::format("{} {} {} {}\n", record.seconds.median, drawn_error(record), record.seconds.low,
+                                        record.seconds.high);
                 }
                 if (rows.empty()) continue;
                 const std::string name = fmt::format("{} {} {}", certified ? "certified" : "any", sizes[k], *label);
                 add_block(chart, name, rows);
-                plot += fmt::format(", \\\n    '' index '{}' using 1:2:3:4 with xerrorbars pt 0 lw 1 lc rgb '#999999', "
-                                    "'' index '{}' using 1:2 with {}", name, name, program_style(*label, certified));
+                plot += fmt::format(
+                    ", \\\n    '' index '{}' using 1:2:3:4 with xerrorbars pt 0 lw 1 lc rgb '#999999', "
+                    "'' index '{}' using 1:2 with {}",
+                    name, name, program_style(*label, certified));
             }
         }
         chart.commands += plot + "\n";
@@ -166,12 +181,13 @@ Chart panels_chart(const std::string& name, const std::string& title, const std:
     const double pitch = 1.0 / static_cast<double>(panels.size());
     for (std::size_t k = 0; k < panels.size(); ++k) {
         const double left = pitch * static_cast<double>(k) + 0.095;
-        chart.commands += frame(left, pitch * static_cast<double>(k + 1) - 0.02, 0.38, 0.88) +
-                          fmt::format("set title '{}' offset 0,-0.6\nset xlabel '{}'\nset ylabel '{}' offset 1,0\n{}plot ", panels[k].title,
-                                      panels[k].x, panels[k].y, panels[k].extra);
+        chart.commands +=
+            frame(left, pitch * static_cast<double>(k + 1) - 0.02, 0.38, 0.88) +
+            fmt::format("set title '{}' offset 0,-0.6\nset xlabel '{}'\nset ylabel '{}' offset 1,0\n{}plot ",
+                        panels[k].title, panels[k].x, panels[k].y, panels[k].extra);
         for (std::size_t i = 0; i < labels.size(); ++i) {
-            chart.commands += fmt::format("{}'{}.dat' index '{}' using {} with {}", i == 0 ? "" : ", \\\n    ", name, labels[i],
-                                          panels[k].columns, line_style(i));
+            chart.commands += fmt::format("{}'{}.dat' index '{}' using {} with {}", i == 0 ? "" : ", \\\n    ", name,
+                                          labels[i], panels[k].columns, line_style(i));
         }
         chart.commands += "\nset autoscale\nset ytics autofreq\n";
     }
@@ -188,16 +204,18 @@ Chart drift_chart(const AccuracyResults& results) {
     for (std::size_t i = 0; i < labels.size(); ++i) {
         for (const auto& record : results.drifts) {
             if (label(record) != labels[i]) continue;
-            rows[i] += fmt::format("{} {} {}\n", record.periods, drawn(record.energy_drift), drawn(record.periodicity_defect));
+            rows[i] +=
+                fmt::format("{} {} {}\n", record.periods, drawn(record.energy_drift), drawn(record.periodicity_defect));
         }
     }
     const std::string range = "set yrange [3e-18:30]\nset ytics add ('0' 1e-17)\n";
     return panels_chart("energy-drift",
-                      fmt::format("Drift of the first nonsmooth mode, N = {} (what leaves the frame is unstable)", results.drifts.empty() ? 0 : results.drifts.front().cells),
-                      labels, rows,
-                      {{"energy", "periods marched", "|E - E_0|/E_0", "1:2", range},
-                       {"state", "periods marched", "periodicity defect (energy norm)", "1:3", range}},
-                      5);
+                        fmt::format("Drift of the first nonsmooth mode, N = {} (what leaves the frame is unstable)",
+                                    results.drifts.empty() ? 0 : results.drifts.front().cells),
+                        labels, rows,
+                        {{"energy", "periods marched", "|E - E_0|/E_0", "1:2", range},
+                         {"state", "periods marched", "periodicity defect (energy norm)", "1:3", range}},
+                        5);
 }
 
 Chart march_chart(const AccuracyResults& results) {
@@ -207,17 +225,17 @@ Chart march_chart(const AccuracyResults& results) {
     for (std::size_t i = 0; i < labels.size(); ++i) {
         for (const auto& record : results.marches) {
             if (label(record) != labels[i]) continue;
-            rows[i] += fmt::format("{} {} {} {}\n", record.cells, drawn(record.tip_error), std::max(record.contact_error, smallest_contact_error),
-                                   record.seconds.median);
+            rows[i] += fmt::format("{} {} {} {}\n", record.cells, drawn(record.tip_error),
+                                   std::max(record.contact_error, smallest_contact_error), record.seconds.median);
         }
     }
     const std::string range = "set xrange [3:500]\nset yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n";
     return panels_chart("error-and-cost", "One period of the first nonsmooth mode", labels, rows,
-                      {{"tip displacement", "cells or elements N", "largest error / |d|", "1:2", range},
-                       {"duration of contact", "cells or elements N", "relative error", "1:3",
-                        "set xrange [3:500]\nset yrange [5e-5:5]\nset ytics add ('0' 1e-4)\n"},
-                       {"cost of a period", "cells or elements N", "CPU time (s)", "1:4", "set xrange [3:500]\n"}},
-                      5);
+                        {{"tip displacement", "cells or elements N", "largest error / |d|", "1:2", range},
+                         {"duration of contact", "cells or elements N", "relative error", "1:3",
+                          "set xrange [3:500]\nset yrange [5e-5:5]\nset ytics add ('0' 1e-4)\n"},
+                         {"cost of a period", "cells or elements N", "CPU time (s)", "1:4", "set xrange [3:500]\n"}},
+                        5);
 }
 
 Chart kernel_chart(const AccuracyResults& results) {
@@ -231,9 +249,10 @@ Chart kernel_chart(const AccuracyResults& results) {
         }
     }
     return panels_chart("accuracy-kernels", "Kernel of S_T: error and cost", labels, rows,
-                      {{"distance to the exact space", "cells N", "sine of the largest angle", "1:2", "set xrange [3:300]\nset yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n"},
-                       {"cost", "cells N", "CPU time (s)", "1:3", "set xrange [3:300]\n"}},
-                      2);
+                        {{"distance to the exact space", "cells N", "sine of the largest angle", "1:2",
+                          "set xrange [3:300]\nset yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n"},
+                         {"cost", "cells N", "CPU time (s)", "1:3", "set xrange [3:300]\n"}},
+                        2);
 }
 
 }  // namespace

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "report/csv.hpp"
 #include "numerics/linear_program.hpp"
 #include "numerics/solver.hpp"
+#include "report/csv.hpp"
 #include "report/one_line.hpp"
 #include "report/results_folder.hpp"
 
@@ -44,21 +44,28 @@ std::string cpu_name() {
 AccuracyFolder::AccuracyFolder(const fs::path& folder, const Scene& scene) : folder_(folder) {
     prepare_results_folder(folder, scene, accuracy_files);
     open(programs_, "programs.csv",
-         "cells,free_steps,contact_steps,kernel_dimension,method,setting,runs,reported,succeeded,certified,proved,seconds_median,"
+         "cells,free_steps,contact_steps,kernel_dimension,method,setting,runs,reported,succeeded,certified,proved,"
+         "seconds_median,"
          "seconds_quartile_1,seconds_quartile_3,iterations,worst_gap,worst_violation,error");
     open(kernels_, "kernels.csv",
-         "cells,free_steps,contact_steps,method,seconds_median,seconds_quartile_1,seconds_quartile_3,dimension,expected,error");
+         "cells,free_steps,contact_steps,method,seconds_median,seconds_quartile_1,seconds_quartile_3,dimension,"
+         "expected,error");
     open(marching_, "marching.csv",
-         "cells,method,setting,decides_contact,steps,seconds_median,seconds_quartile_1,seconds_quartile_3,tip_error,contact_error");
+         "cells,method,setting,decides_contact,steps,seconds_median,seconds_quartile_1,seconds_quartile_3,tip_error,"
+         "contact_error");
     open(drift_, "drift.csv", "cells,method,setting,periods,energy_drift,periodicity_defect,seconds");
     std::string outcomes;
     for (int k = 0; k < outcome_count; ++k) outcomes += fmt::format(",{}", name(static_cast<Outcome>(k)));
     open(stability_, "stability.csv",
-         ("map,cells,free_steps,contact_steps,kernel_dimension,method,column,difficulty,above_least,below_greatest,runs,reported,"
-          "false_success,certified,proved,iterations,seconds" + outcomes).c_str());
+         ("map,cells,free_steps,contact_steps,kernel_dimension,method,column,difficulty,above_least,below_greatest,"
+          "runs,reported,"
+          "false_success,certified,proved,iterations,seconds" +
+          outcomes)
+             .c_str());
     open(causes_, "causes.csv", "method,map,cause,runs,of,what");
     open(tolerance_, "tolerance.csv", "cells,free_steps,contact_steps,method,tolerance,found,expected");
-    open(winners_, "winners.csv", "kernel_dimension,front,rank,method,setting,seconds_median,error,succeeded,certified,runs");
+    open(winners_, "winners.csv",
+         "kernel_dimension,front,rank,method,setting,seconds_median,error,succeeded,certified,runs");
     open(machine_, "machine.txt", "");
 }
 
@@ -83,24 +90,24 @@ void AccuracyFolder::write(Table& table, const std::string& line) {
 
 void AccuracyFolder::program(const ProgramRecord& record) {
     results_.programs.push_back(record);
-    write(programs_, fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", steps(record.pattern), record.size,
-                                 csv_text(record.method), csv_text(record.setting), record.runs, record.reported,
-                                 record.succeeded, record.certified, record.proved, times(record.seconds), csv_number(record.iterations),
-                                 csv_number(record.worst_gap), csv_number(record.worst_violation),
-                                 csv_number(record.error)));
+    write(programs_,
+          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", steps(record.pattern), record.size,
+                      csv_text(record.method), csv_text(record.setting), record.runs, record.reported, record.succeeded,
+                      record.certified, record.proved, times(record.seconds), csv_number(record.iterations),
+                      csv_number(record.worst_gap), csv_number(record.worst_violation), csv_number(record.error)));
 }
 
 void AccuracyFolder::kernel(const KernelRecord& record) {
     results_.kernels.push_back(record);
-    write(kernels_, fmt::format("{},{},{},{},{},{}", steps(record.pattern), csv_text(record.method), times(record.seconds),
-                                record.dimension, record.expected, csv_number(record.error)));
+    write(kernels_, fmt::format("{},{},{},{},{},{}", steps(record.pattern), csv_text(record.method),
+                                times(record.seconds), record.dimension, record.expected, csv_number(record.error)));
 }
 
 void AccuracyFolder::march(const MarchRecord& record) {
     results_.marches.push_back(record);
-    write(marching_, fmt::format("{},{},{},{},{},{},{},{}", record.cells, csv_text(record.method), csv_text(record.setting),
-                                 record.decides_contact, record.steps, times(record.seconds), csv_number(record.tip_error),
-                                 csv_number(record.contact_error)));
+    write(marching_, fmt::format("{},{},{},{},{},{},{},{}", record.cells, csv_text(record.method),
+                                 csv_text(record.setting), record.decides_contact, record.steps, times(record.seconds),
+                                 csv_number(record.tip_error), csv_number(record.contact_error)));
 }
 
 void AccuracyFolder::drift(const DriftRecord& record) {
@@ -114,11 +121,11 @@ void AccuracyFolder::stability(const StabilityRecord& record) {
     results_.stability.push_back(record);
     std::string outcomes;
     for (const int count : record.outcomes) outcomes += fmt::format(",{}", count);
-    write(stability_, fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}{}", record.map, steps(record.pattern), record.size,
-                                  csv_text(record.method), record.column, csv_text(record.difficulty),
+    write(stability_, fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}{}", record.map, steps(record.pattern),
+                                  record.size, csv_text(record.method), record.column, csv_text(record.difficulty),
                                   csv_number(record.above_least), csv_number(record.below_greatest), record.runs,
-                                  record.reported, record.false_success, record.certified, record.proved, csv_number(record.iterations),
-                                  csv_number(record.seconds), outcomes));
+                                  record.reported, record.false_success, record.certified, record.proved,
+                                  csv_number(record.iterations), csv_number(record.seconds), outcomes));
 }
 
 void AccuracyFolder::tolerance(const ToleranceRecord& record) {
@@ -138,8 +145,8 @@ void AccuracyFolder::finish() {
         for (const bool certified : {false, true}) {
             int rank = 0;
             for (const auto* record : pareto_front(results_.programs, size, certified)) {
-                write(winners_, fmt::format("{},{},{},{},{},{},{},{},{},{}", size, certified ? "certified" : "any", ++rank,
-                                            csv_text(record->method), csv_text(record->setting),
+                write(winners_, fmt::format("{},{},{},{},{},{},{},{},{},{}", size, certified ? "certified" : "any",
+                                            ++rank, csv_text(record->method), csv_text(record->setting),
                                             csv_number(record->seconds.median), csv_number(record->error),
                                             record->succeeded, record->certified, record->runs));
             }
@@ -156,12 +163,13 @@ void AccuracyFolder::finish() {
         for (std::size_t k = 0; k < value.first.size(); ++k) {
             if (value.first[k] == 0) continue;
             const auto outcome = static_cast<Outcome>(k);
-            write(causes_, fmt::format("{},{},{},{},{},{}", csv_text(key.first), key.second, name(outcome), value.first[k],
-                                       value.second, csv_text(description(outcome))));
+            write(causes_, fmt::format("{},{},{},{},{},{}", csv_text(key.first), key.second, name(outcome),
+                                       value.first[k], value.second, csv_text(description(outcome))));
         }
     }
     write(machine_, machine_text());
-    for (Table* table : {&programs_, &kernels_, &marching_, &drift_, &stability_, &causes_, &tolerance_, &winners_, &machine_}) {
+    for (Table* table :
+         {&programs_, &kernels_, &marching_, &drift_, &stability_, &causes_, &tolerance_, &winners_, &machine_}) {
         std::FILE* file = table->file.get();
         errno = 0;
         if (std::fflush(file) != 0 || (fsync(fileno(file)) != 0 && errno != EINVAL))
@@ -179,8 +187,7 @@ bool all_certified(const ProgramRecord& record) { return record.runs > 0 && reco
 
 std::vector<const ProgramRecord*> pareto_front(const std::vector<ProgramRecord>& records, int size, bool certified) {
     const auto beats = [](const ProgramRecord& a, const ProgramRecord& b) {
-        return a.seconds.high < b.seconds.low &&
-               std::max(a.error, rounding_error) <= std::max(b.error, rounding_error);
+        return a.seconds.high < b.seconds.low && std::max(a.error, rounding_error) <= std::max(b.error, rounding_error);
     };
     std::vector<const ProgramRecord*> front;
     for (const auto& record : records) {
@@ -201,15 +208,17 @@ std::string machine_text() {
 #else
     const char* build = "debug (assertions on)";
 #endif
-    return fmt::format("cpu: {}\ncompiler: {}\nbuild: {}\nIpopt: {}\nNLopt: {}\nCLP: {}\nEigen: {}.{}.{}\ntimes: CPU seconds of one thread",
-                       one_line(cpu_name()),
+    return fmt::format(
+        "cpu: {}\ncompiler: {}\nbuild: {}\nIpopt: {}\nNLopt: {}\nCLP: {}\nEigen: {}.{}.{}\ntimes: CPU seconds of one "
+        "thread",
+        one_line(cpu_name()),
 #ifdef __clang__
-                       "clang " __clang_version__,
+        "clang " __clang_version__,
 #else
-                       "g++ " __VERSION__,
+        "g++ " __VERSION__,
 #endif
-                       build, ipopt_version(), nlopt_version(), clp_version(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                       EIGEN_MINOR_VERSION);
+        build, ipopt_version(), nlopt_version(), clp_version(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+        EIGEN_MINOR_VERSION);
 }
 
 }  // namespace nsma

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "report/charts.hpp"
-#include "nsma/report/scene_file.hpp"
 #include "study/accuracy/accuracy_records.hpp"
+#include "nsma/report/scene_file.hpp"
+#include "report/charts.hpp"
 
 namespace nsma {
 
@@ -24,9 +24,9 @@ struct AccuracyResults {
 };
 
 /// Files of a study in its folder, beside scene.toml; columns and units: data/README.md.
-inline constexpr std::array<const char*, 9> accuracy_files{
-    "programs.csv", "kernels.csv",   "marching.csv", "drift.csv", "stability.csv",
-    "causes.csv",   "tolerance.csv", "winners.csv",  "machine.txt"};
+inline constexpr std::array<const char*, 9> accuracy_files{"programs.csv",  "kernels.csv",   "marching.csv",
+                                                           "drift.csv",     "stability.csv", "causes.csv",
+                                                           "tolerance.csv", "winners.csv",   "machine.txt"};
 
 /// Writes an accuracy study into a folder as its records come, one CSV row each; rows go to
 /// NAME.part files that take their final names in finish(). Keeps the records for the charts.

@@ -100,7 +100,8 @@ Chart level_chart(const AccuracyResults& results, Shown shown, const char* name,
         for (const int size : sizes) map.rows.push_back(k % columns == 0 ? fmt::format("m = {}", size) : "");
         for (const auto* record : records) {
             if (record->method != map.title) continue;
-            if (static_cast<int>(map.columns.size()) <= record->column) map.columns.resize(static_cast<std::size_t>(record->column) + 1);
+            if (static_cast<int>(map.columns.size()) <= record->column)
+                map.columns.resize(static_cast<std::size_t>(record->column) + 1);
             map.columns[static_cast<std::size_t>(record->column)] = record->difficulty;
             map.cells.push_back(cell(*record, shown, record->column, place(sizes, record->size), lo, hi));
         }
@@ -118,15 +119,17 @@ Chart level_chart(const AccuracyResults& results, Shown shown, const char* name,
 
 // One panel a difficulty: its degrees along x, methods along y.
 Chart difficulty_chart(const AccuracyResults& results, const Pattern& pattern, const std::string& name) {
-    static const std::array<std::pair<const char*, const char*>, 3> maps{{
-        {"start", "distance of the start, in radii of the energy sphere"},
-        {"units", "unit of the objective and rows"},
-        {"rows", "rows put back that presolve removes"}}};
+    static const std::array<std::pair<const char*, const char*>, 3> maps{
+        {{"start", "distance of the start, in radii of the energy sphere"},
+         {"units", "unit of the objective and rows"},
+         {"rows", "rows put back that presolve removes"}}};
     Chart chart{name, "", heat_head, 900};
     chart.commands += fmt::format(
-        "set multiplot title 'Success rate (%): replayed, and within 1e-6 of the best; N = {}, r = {}, p = {}' noenhanced font ',15'\n",
+        "set multiplot title 'Success rate (%): replayed, and within 1e-6 of the best; N = {}, r = {}, p = {}' "
+        "noenhanced font ',15'\n",
         pattern.cells, pattern.free_steps, pattern.contact_steps);
-    const std::array<std::array<double, 4>, 3> frames{{{0.15, 0.53, 0.58, 0.90}, {0.59, 0.98, 0.58, 0.90}, {0.15, 0.53, 0.14, 0.44}}};
+    const std::array<std::array<double, 4>, 3> frames{
+        {{0.15, 0.53, 0.58, 0.90}, {0.59, 0.98, 0.58, 0.90}, {0.15, 0.53, 0.14, 0.44}}};
     for (std::size_t k = 0; k < maps.size(); ++k) {
         HeatMap map;
         map.name = maps[k].first;
@@ -206,7 +209,8 @@ Chart tolerance_chart(const AccuracyResults& results) {
             const bool long_cycle = is_long[{record.pattern.cells, record.pattern.free_steps}];
             if (std::pair{record.method, long_cycle} != panels[k]) continue;
             const int wrong = record.found - record.expected;
-            const double depth = wrong == 0 ? 0.0 : 0.35 + 0.65 * std::min(1.0, std::log10(std::abs(wrong) + 1.0) / 2.5);
+            const double depth =
+                wrong == 0 ? 0.0 : 0.35 + 0.65 * std::min(1.0, std::log10(std::abs(wrong) + 1.0) / 2.5);
             map.cells.push_back({place(tolerances, record.tolerance), place(cells, record.pattern.cells), depth,
                                  wrong == 0 ? "" : fmt::format("{:+d}", wrong)});
         }
@@ -223,11 +227,13 @@ Chart tolerance_chart(const AccuracyResults& results) {
 std::vector<Chart> stability_charts(const AccuracyResults& results) {
     std::vector<Chart> charts;
     if (!of_map(results, "level").empty()) {
-        charts.push_back(level_chart(results, Shown::failures, "stability-success",
-                                     "Success rate (%): replayed, and within 1e-6 of the best (*: best known, not proved)"));
-        charts.push_back(level_chart(results, Shown::iterations, "stability-iterations",
-                                     "Iterations or evaluations, median"));
-        charts.push_back(level_chart(results, Shown::seconds, "stability-time", "CPU time of a run (s; m: 1e-3, µ: 1e-6), median"));
+        charts.push_back(
+            level_chart(results, Shown::failures, "stability-success",
+                        "Success rate (%): replayed, and within 1e-6 of the best (*: best known, not proved)"));
+        charts.push_back(
+            level_chart(results, Shown::iterations, "stability-iterations", "Iterations or evaluations, median"));
+        charts.push_back(
+            level_chart(results, Shown::seconds, "stability-time", "CPU time of a run (s; m: 1e-3, µ: 1e-6), median"));
     }
     std::vector<Pattern> patterns;
     for (const auto& record : results.stability) {

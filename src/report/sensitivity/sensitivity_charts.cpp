@@ -26,18 +26,18 @@ std::string pattern_text(const Pattern& pattern) {
 }
 
 const char* words_of(const std::string& relaxed) {
-    static const std::map<std::string, const char*, std::less<>> words{
-        {"penetration", "COND1: penetration"},
-        {"band", "COND2: band"},
-        {"adhesion", "COND3: adhesion"},
-        {"penetration+band", "COND1 and COND2"},
-        {"penetration+adhesion", "COND1 and COND3"},
-        {"band+adhesion", "COND2 and COND3"}};
+    static const std::map<std::string, const char*, std::less<>> words{{"penetration", "COND1: penetration"},
+                                                                       {"band", "COND2: band"},
+                                                                       {"adhesion", "COND3: adhesion"},
+                                                                       {"penetration+band", "COND1 and COND2"},
+                                                                       {"penetration+adhesion", "COND1 and COND3"},
+                                                                       {"band+adhesion", "COND2 and COND3"}};
     const auto found = words.find(relaxed);
     return found == words.end() ? "?" : found->second;
 }
 
-// What relaxing one row saves, relative, also where only an orbit tied with this one uses it; zero where there is no number.
+// What relaxing one row saves, relative, also where only an orbit tied with this one uses it; zero where there is no
+// number.
 double saving(const OptimumRecord& optimum, const Price& price) {
     return price.slope.right ? std::max(-*price.slope.right / optimum.value, 0.0) : 0.0;
 }
@@ -92,7 +92,8 @@ Chart binding_chart(const Scene& scene, const OptimumRecord& optimum) {
                             "of Y S |d|/L]\n# tip\n",
                             scene.title),
                 ""};
-    for (Eigen::Index n = 0; n < tip.size(); ++n) chart.data += fmt::format("{} {}\n", static_cast<double>(n) / cells, tip[n]);
+    for (Eigen::Index n = 0; n < tip.size(); ++n)
+        chart.data += fmt::format("{} {}\n", static_cast<double>(n) / cells, tip[n]);
     double highest = 0;
     const auto bars = [&](const char* index, Parameter parameter) {
         bool any = false;
@@ -118,13 +119,15 @@ Chart binding_chart(const Scene& scene, const OptimumRecord& optimum) {
         for (const int step : price.steps) chart.data += fmt::format("{} {}\n", step / cells, tip[step]);
     }
     std::string elasticities;
-    for (const auto& [parameter, words] : {std::pair{Parameter::gap, "gap"}, std::pair{Parameter::contact, "place of contact"},
-                                           std::pair{Parameter::energy, "energy"}}) {
+    for (const auto& [parameter, words] :
+         {std::pair{Parameter::gap, "gap"}, std::pair{Parameter::contact, "place of contact"},
+          std::pair{Parameter::energy, "energy"}}) {
         const auto slope = right_slope(optimum.prices, parameter);
         if (!slope) continue;
         const double relative = elasticity(*slope, parameter, optimum.value, scene.bar.gap_sign(),
                                            optimum.level.value_or(energy_ratio(optimum.orbit)));
-        elasticities += fmt::format("{}{} {:+.3g}", elasticities.empty() ? "elasticity of the objective: " : ", ", words, relative);
+        elasticities +=
+            fmt::format("{}{} {:+.3g}", elasticities.empty() ? "elasticity of the objective: " : ", ", words, relative);
     }
     const bool narrow = 8 * pattern.contact_steps < pattern.period_steps();  // for the word
     const double lowest = tip.minCoeff();
@@ -172,9 +175,8 @@ unset multiplot
         fmt::arg("lowest", lowest - 0.5 * head), fmt::arg("top", wall + head), fmt::arg("wall", wall),
         fmt::arg("label", wall + 0.5 * head), fmt::arg("free", pattern.free_steps / cells),
         fmt::arg("contact_at", narrow ? period : (pattern.free_steps + 0.5 * pattern.contact_steps) / cells),
-        fmt::arg("contact_side", narrow ? "right" : "center"),
-        fmt::arg("highest", highest > 0 ? 1.15 * highest : 1.0), fmt::arg("width", 0.7 / cells),
-        fmt::arg("elasticities", gnuplot_text(elasticities)),
+        fmt::arg("contact_side", narrow ? "right" : "center"), fmt::arg("highest", highest > 0 ? 1.15 * highest : 1.0),
+        fmt::arg("width", 0.7 / cells), fmt::arg("elasticities", gnuplot_text(elasticities)),
         fmt::arg("flight_words", wall_decides ? "COND1: saved per penetration of 1 % of |d| at this step"
                                               : "COND1: no step of the flight has a price"),
         fmt::arg("contact_words", push_decides ? "COND3: saved per tension of 1 % of YS|d|/L at this step"
@@ -185,18 +187,19 @@ unset multiplot
 
 Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records, const IntervalRecord& interval,
                        const OptimumRecord* optimum) {
-    Chart chart{"relaxation",
-                fmt::format("# {}: amount (of |d|; of Y S |d|/L), E_min/E_g, E_max/E_g, objective over its value at zero, "
-                            "then the tangents of these at zero\n",
-                            scene.title),
-                ""};
+    Chart chart{
+        "relaxation",
+        fmt::format("# {}: amount (of |d|; of Y S |d|/L), E_min/E_g, E_max/E_g, objective over its value at zero, "
+                    "then the tangents of these at zero\n",
+                    scene.title),
+        ""};
     std::array<std::string, 3> panels;
     double reach = 0;
     const std::vector<Price> none;
     const auto& objective_prices = optimum != nullptr ? optimum->prices : none;
     // Pairs below, so that the single conditions and their tangents are seen.
-    constexpr std::array relaxed_names{"penetration+band", "penetration+adhesion", "band+adhesion",
-                                       "penetration",      "band",                 "adhesion"};
+    constexpr std::array relaxed_names{
+        "penetration+band", "penetration+adhesion", "band+adhesion", "penetration", "band", "adhesion"};
     for (std::size_t i = 0; i < relaxed_names.size(); ++i) {
         const std::string relaxed = relaxed_names.at(i);
         const bool single = i >= 3;
@@ -213,30 +216,32 @@ Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records, co
             std::optional<double> objective;
             if (optimum != nullptr && record.objective) objective = *record.objective / optimum->value;
             const double value = optimum != nullptr ? optimum->value : 1.0;
-            chart.data += fmt::format("{} {} {} {} {} {} {}\n", record.amount, *record.least, number_or_gap(record.greatest),
-                                      number_or_gap(objective),
-                                      tangent(interval.least_prices, interval.least, 1.0, record.amount),
-                                      tangent(interval.greatest_prices, interval.greatest.value_or(0), 1.0, record.amount),
-                                      tangent(objective_prices, value, value, record.amount));
+            chart.data += fmt::format(
+                "{} {} {} {} {} {} {}\n", record.amount, *record.least, number_or_gap(record.greatest),
+                number_or_gap(objective), tangent(interval.least_prices, interval.least, 1.0, record.amount),
+                tangent(interval.greatest_prices, interval.greatest.value_or(0), 1.0, record.amount),
+                tangent(objective_prices, value, value, record.amount));
         }
         for (std::size_t panel = 0; panel < 3; ++panel) {
             panels.at(panel) += fmt::format(
-                "{}'relaxation.dat' index {} using 1:{} with linespoints lw 2 pt {} ps {}*mark {}", i == 0 ? "" : ", \\\n     ",
-                i, 2 + panel, marks.at(style), single ? 0.9 : 1.5, lines.at(style));
+                "{}'relaxation.dat' index {} using 1:{} with linespoints lw 2 pt {} ps {}*mark {}",
+                i == 0 ? "" : ", \\\n     ", i, 2 + panel, marks.at(style), single ? 0.9 : 1.5, lines.at(style));
             if (single) {
                 panels.at(panel) += fmt::format(
-                    ", \\\n     'relaxation.dat' index {} using 1:{} with lines lw 1.5 dt 3 lc rgb '#333333'", i, 5 + panel);
+                    ", \\\n     'relaxation.dat' index {} using 1:{} with lines lw 1.5 dt 3 lc rgb '#333333'", i,
+                    5 + panel);
             }
         }
     }
     std::string legend = "NaN with lines lw 1.5 dt 3 lc rgb '#333333' title 'tangents at zero, from the multipliers'";
-    for (const auto& [relaxed, style] : {std::pair{"penetration", 0U}, std::pair{"band", 1U}, std::pair{"adhesion", 2U},
-                                         std::pair{"penetration+band", 3U}, std::pair{"penetration+adhesion", 4U},
-                                         std::pair{"band+adhesion", 5U}}) {
+    for (const auto& [relaxed, style] :
+         {std::pair{"penetration", 0U}, std::pair{"band", 1U}, std::pair{"adhesion", 2U},
+          std::pair{"penetration+band", 3U}, std::pair{"penetration+adhesion", 4U}, std::pair{"band+adhesion", 5U}}) {
         legend += fmt::format(", \\\n     NaN with linespoints lw 2 pt {} ps {}*mark {} title '{}'", marks.at(style),
                               style < 3 ? 0.9 : 1.5, lines.at(style), words_of(relaxed));
     }
-    const std::string level = optimum != nullptr && optimum->level ? fmt::format(" at E = {:.3g} E_g", *optimum->level) : "";
+    const std::string level =
+        optimum != nullptr && optimum->level ? fmt::format(" at E = {:.3g} E_g", *optimum->level) : "";
     chart.commands = fmt::format(
         R"(set multiplot
 {axes}unset key
@@ -272,7 +277,8 @@ plot [0:1] [0:1] {legend}
 unset multiplot
 )",
         fmt::arg("axes", axes), fmt::arg("reach", reach > 0 ? 1.02 * reach : 1.0),
-        fmt::arg("title", gnuplot_text("Allowing penetration, a band of contact, tension: " + pattern_text(interval.pattern))),
+        fmt::arg("title",
+                 gnuplot_text("Allowing penetration, a band of contact, tension: " + pattern_text(interval.pattern))),
         fmt::arg("objective", gnuplot_text(fmt::format("{}{}, relative", name(scene.objective), level))),
         fmt::arg("least", panels[0]), fmt::arg("greatest", panels[1]), fmt::arg("objectives", panels[2]),
         fmt::arg("legend", legend));
@@ -280,7 +286,8 @@ unset multiplot
 }
 
 Chart count_chart(const Scene& scene, const SensitivityRecords& records) {
-    Chart chart{"counts", fmt::format("# {}: amount (of |d|; of Y S |d|/L), number of admissible patterns\n", scene.title), ""};
+    Chart chart{"counts",
+                fmt::format("# {}: amount (of |d|; of Y S |d|/L), number of admissible patterns\n", scene.title), ""};
     std::map<std::string, std::map<double, int>> counts;
     std::vector<std::string> order;
     double reach = 0;
@@ -307,7 +314,8 @@ set bmargin screen 0.26
 set key at screen 0.53, screen 0.12 center top vertical maxrows 2 Left reverse samplen 4
 plot {curves}
 )",
-        fmt::arg("axes", axes), fmt::arg("title", gnuplot_text(scene.title + ": admissible patterns when conditions are relaxed")),
+        fmt::arg("axes", axes),
+        fmt::arg("title", gnuplot_text(scene.title + ": admissible patterns when conditions are relaxed")),
         fmt::arg("reach", reach > 0 ? 1.02 * reach : 1.0), fmt::arg("highest", std::ceil(1.1 * highest)),
         fmt::arg("curves", curves));
     return chart;
@@ -383,7 +391,8 @@ std::vector<std::filesystem::path> draw_sensitivity(const std::filesystem::path&
         if (interval == nullptr || same) interval = &record;
     }
     if (interval != nullptr && !records.curves.empty()) {
-        const bool at_level = telling != nullptr && telling->level && telling->orbit.kernel.pattern == interval->pattern;
+        const bool at_level =
+            telling != nullptr && telling->level && telling->orbit.kernel.pattern == interval->pattern;
         draw(relaxation_chart(scene, records, *interval, at_level ? telling : nullptr));
     }
     if (records.ablations.size() > 1) {

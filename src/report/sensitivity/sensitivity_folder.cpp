@@ -56,11 +56,11 @@ std::string price_fields(const Price& price, Objective objective, double value, 
         return side ? csv_number(elasticity(*side, price.parameter, value, gap_sign, level)) : std::string();
     };
     const Slope& slope = price.slope;
-    return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", name(price.parameter),
-                       unit_name(price.parameter), steps_text(price.steps), price.active, kind_name(slope.kind),
-                       csv_number(slope.right), csv_number(slope.left), si(slope.right), si(slope.left),
-                       relative(slope.right), relative(slope.left), csv_number(slope.right_root),
-                       csv_number(slope.left_root), csv_text(slope.reason));
+    return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", name(price.parameter), unit_name(price.parameter),
+                       steps_text(price.steps), price.active, kind_name(slope.kind), csv_number(slope.right),
+                       csv_number(slope.left), si(slope.right), si(slope.left), relative(slope.right),
+                       relative(slope.left), csv_number(slope.right_root), csv_number(slope.left_root),
+                       csv_text(slope.reason));
 }
 
 double level_of(const OptimumRecord& record) { return record.level.value_or(energy_ratio(record.orbit)); }
@@ -72,7 +72,8 @@ std::string optima_text(const Scene& scene, const SensitivityRecords& records) {
     for (const auto& record : records.optima) {
         text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", pattern_fields(scene, record.orbit.kernel.pattern),
                             csv_number(record.level), csv_number(energy(record.orbit)), name(record.objective),
-                            csv_number(record.value), record.global, record.nondegenerate, record.tied > 0 ? std::to_string(record.tied) : std::string(),
+                            csv_number(record.value), record.global, record.nondegenerate,
+                            record.tied > 0 ? std::to_string(record.tied) : std::string(),
                             csv_number(record.kkt_residual), csv_number(record.euler_defect), csv_text(record.refusal));
     }
     return text;
@@ -82,10 +83,10 @@ std::string prices_text(const Scene& scene, const SensitivityRecords& records) {
     std::string text = fmt::format("{},level,objective,objective_value,{}\n", pattern_columns, price_columns);
     for (const auto& record : records.optima) {
         for (const auto& price : record.prices) {
-            text += fmt::format("{},{},{},{},{}\n", pattern_fields(scene, record.orbit.kernel.pattern),
-                                csv_number(record.level), name(record.objective), csv_number(record.value),
-                                price_fields(price, record.objective, record.value, scene.bar.gap_sign(),
-                                             level_of(record), scene.bar));
+            text += fmt::format(
+                "{},{},{},{},{}\n", pattern_fields(scene, record.orbit.kernel.pattern), csv_number(record.level),
+                name(record.objective), csv_number(record.value),
+                price_fields(price, record.objective, record.value, scene.bar.gap_sign(), level_of(record), scene.bar));
         }
     }
     return text;
@@ -98,9 +99,9 @@ std::string derivatives_text(const Scene& scene, const SensitivityRecords& recor
         // alpha = beta u/dt, the gap being moved at a fixed unit u.
         const double velocity = scene.bar.displacement_unit() / record.orbit.mesh().time_step(scene.bar);
         for (const auto& derivative : record.derivatives) {
-            const std::string head =
-                fmt::format("{},{},{},{},{}", pattern_fields(scene, record.orbit.kernel.pattern), csv_number(record.level),
-                            name(record.objective), name(derivative.parameter), unit_name(derivative.parameter));
+            const std::string head = fmt::format("{},{},{},{},{}", pattern_fields(scene, record.orbit.kernel.pattern),
+                                                 csv_number(record.level), name(record.objective),
+                                                 name(derivative.parameter), unit_name(derivative.parameter));
             if (!derivative.slope.beta) {
                 text += fmt::format("{},,,,{}\n", head, csv_text(derivative.slope.reason));
                 continue;
@@ -157,8 +158,9 @@ std::string relaxations_text(const Scene& scene, const SensitivityRecords& recor
 }
 
 std::string ablation_text(const Scene& scene, const SensitivityRecords& records) {
-    std::string text = fmt::format(
-        "{},kernel_dimension,kernel,cond1,cond2,cond3,cond1_cond2,cond1_cond3,cond2_cond3,all,only,kind\n", pattern_columns);
+    std::string text =
+        fmt::format("{},kernel_dimension,kernel,cond1,cond2,cond3,cond1_cond2,cond1_cond3,cond2_cond3,all,only,kind\n",
+                    pattern_columns);
     for (const auto& record : records.ablations) {
         const auto& s = record.survives;
         std::string only;  // the one condition without which it would exist
@@ -183,12 +185,14 @@ std::string funnel_text(const SensitivityRecords& records) {
 }
 
 std::string summary_text(const SensitivitySummary& summary) {
-    return fmt::format("patterns {}, admissible {}, of which {} are no contact motion and were left\noptima {}: {} nondegenerate, {} tied with others, {} refused\n"
-                       "worst KKT residual {:.1e}, worst defect of Euler's identity {:.1e} (relative)\n"
-                       "frequency along a mode, exact against stored neighbours: worst {:.1e} (relative)\n{}",
-                       summary.patterns, summary.admissible, summary.left, summary.optima, summary.nondegenerate, summary.tied,
-                       summary.refused, summary.worst_kkt, summary.worst_euler, summary.worst_frequency,
-                       summary.interrupted ? "interrupted: partial results\n" : "");
+    return fmt::format(
+        "patterns {}, admissible {}, of which {} are no contact motion and were left\noptima {}: {} nondegenerate, {} "
+        "tied with others, {} refused\n"
+        "worst KKT residual {:.1e}, worst defect of Euler's identity {:.1e} (relative)\n"
+        "frequency along a mode, exact against stored neighbours: worst {:.1e} (relative)\n{}",
+        summary.patterns, summary.admissible, summary.left, summary.optima, summary.nondegenerate, summary.tied,
+        summary.refused, summary.worst_kkt, summary.worst_euler, summary.worst_frequency,
+        summary.interrupted ? "interrupted: partial results\n" : "");
 }
 
 }  // namespace
@@ -231,8 +235,8 @@ void open_sensitivity_folder(const fs::path& folder, const Scene& scene) {
 
 std::string sensitivity_text(const std::string& file, const Scene& scene, const SensitivityRecords& records,
                              const SensitivitySummary& summary) {
-    const std::string head = fmt::format("# nsma sensitivity: {}; columns and units: data/README.md of nsma\n",
-                                         one_line(scene.title));
+    const std::string head =
+        fmt::format("# nsma sensitivity: {}; columns and units: data/README.md of nsma\n", one_line(scene.title));
     if (file == "optima.csv") return head + optima_text(scene, records);
     if (file == "prices.csv") return head + prices_text(scene, records);
     if (file == "orbit-derivatives.csv") return head + derivatives_text(scene, records);

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "report/charts.hpp"
 #include "nsma/study/sensitivity/sensitivity.hpp"
+#include "report/charts.hpp"
 
 namespace nsma {
 
 /// Files of a sensitivity study in its folder, beside scene.toml; columns: data/README.md.
 inline constexpr std::array<const char*, 8> sensitivity_files{
-    "optima.csv",      "prices.csv",   "orbit-derivatives.csv", "intervals.csv",
-    "relaxations.csv", "ablation.csv", "funnel.csv",            "sensitivity.txt"};
+    "optima.csv",   "prices.csv", "orbit-derivatives.csv", "intervals.csv", "relaxations.csv",
+    "ablation.csv", "funnel.csv", "sensitivity.txt"};
 
 /// The six orders in which COND1-3 can be imposed, with the number of patterns left after the
 /// kernel and after each condition.
@@ -42,20 +42,18 @@ struct SensitivityRecords : SensitivitySink {
 void open_sensitivity_folder(const std::filesystem::path& folder, const Scene& scene);
 
 /// Writes the files; each appears under its name only when it is complete. Throws InputError.
-void write_sensitivity(const std::filesystem::path& folder, const Scene& scene,
-                       const SensitivityRecords& records, const SensitivitySummary& summary);
+void write_sensitivity(const std::filesystem::path& folder, const Scene& scene, const SensitivityRecords& records,
+                       const SensitivitySummary& summary);
 
 /// The text of each file; `file` is one of sensitivity_files.
 [[nodiscard]] std::string sensitivity_text(const std::string& file, const Scene& scene,
-                                           const SensitivityRecords& records,
-                                           const SensitivitySummary& summary);
+                                           const SensitivityRecords& records, const SensitivitySummary& summary);
 
 /// Derivative in SI: objective (J; N for least-force) per metre, newton or joule.
 [[nodiscard]] double in_si(double derivative, Objective objective, Parameter parameter, const Bar& bar);
 /// Relative change of the value per relative change of gap or energy; of a parameter that is
 /// zero, per |d| or per Y S |d|/L.
-[[nodiscard]] double elasticity(double derivative, Parameter parameter, double value, int gap_sign,
-                                double level);
+[[nodiscard]] double elasticity(double derivative, Parameter parameter, double value, int gap_sign, double level);
 
 /// Where in the motion the wall decides: x_1(t) above, what relaxing each row saves below.
 [[nodiscard]] Chart binding_chart(const Scene& scene, const OptimumRecord& optimum);
@@ -69,7 +67,8 @@ void write_sensitivity(const std::filesystem::path& folder, const Scene& scene,
 [[nodiscard]] Chart funnel_chart(const Scene& scene, const SensitivityRecords& records);
 
 /// Draws the charts that the records can show into folder/charts; returns the SVG and PNG files.
-[[nodiscard]] std::vector<std::filesystem::path> draw_sensitivity(
-    const std::filesystem::path& folder, const Scene& scene, const SensitivityRecords& records);
+[[nodiscard]] std::vector<std::filesystem::path> draw_sensitivity(const std::filesystem::path& folder,
+                                                                  const Scene& scene,
+                                                                  const SensitivityRecords& records);
 
 }  // namespace nsma

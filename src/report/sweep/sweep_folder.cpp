@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "nsma/report/orbit_json.hpp"
 #include "tables.hpp"
+#include "nsma/report/orbit_json.hpp"
 #include "report/one_line.hpp"
 #include "report/results_folder.hpp"
 
@@ -34,7 +34,8 @@ std::string summary_json(const SweepSummary& summary) {
     json["trivial"] = summary.trivial;
     json["inadmissible"] = summary.inadmissible;
     json["admissible"] = summary.admissible;
-    for (const PatternKind kind : pattern_kinds) json["kinds"][std::string(name(kind))] = summary.kinds[static_cast<std::size_t>(kind)];
+    for (const PatternKind kind : pattern_kinds)
+        json["kinds"][std::string(name(kind))] = summary.kinds[static_cast<std::size_t>(kind)];
     json["left"] = summary.left;
     json["failed_patterns"] = summary.failed_patterns;
     json["levels"] = summary.levels;
@@ -71,10 +72,11 @@ constexpr const char* csv_notes =
 
 }  // namespace
 
-void prepare_sweep_folder(const fs::path& folder, const Scene& scene) { prepare_results_folder(folder, scene, sweep_files); }
+void prepare_sweep_folder(const fs::path& folder, const Scene& scene) {
+    prepare_results_folder(folder, scene, sweep_files);
+}
 
-SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)
-    : folder_(folder), bar_(scene.bar) {
+SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene) : folder_(folder), bar_(scene.bar) {
     prepare_sweep_folder(folder, scene);
     patterns_ = open("patterns.csv");
     levels_ = open("levels.csv");
@@ -82,11 +84,9 @@ SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)
     timings_ = open("timings.csv");
     const std::string title = "# nsma sweep: " + one_line(scene.title);
     write(patterns_, fmt::format("{}: patterns\n{}\n{}", title, csv_notes, patterns_csv_header()));
-    write(levels_,
-          fmt::format(
-              "{}: energy levels\n{}\n# level is in units of E_g, in joules for a closed gap; "
-              "empty in the row of a pattern's least-energy orbit.\n{}",
-              title, csv_notes, levels_csv_header()));
+    write(levels_, fmt::format("{}: energy levels\n{}\n# level is in units of E_g, in joules for a closed gap; "
+                               "empty in the row of a pattern's least-energy orbit.\n{}",
+                               title, csv_notes, levels_csv_header()));
     write(timings_, fmt::format("{}: wall times [s]\n{}", title, timings_csv_header()));
 }
 
@@ -101,23 +101,21 @@ SweepFolder::Output SweepFolder::open(const char* name) {
 
 void SweepFolder::write(Output& output, const std::string& line) {
     std::FILE* file = output.file.get();
-    if (std::fwrite(line.data(), 1, line.size(), file) != line.size() ||
-        std::fputc('\n', file) == EOF || std::fflush(file) != 0) {
+    if (std::fwrite(line.data(), 1, line.size(), file) != line.size() || std::fputc('\n', file) == EOF ||
+        std::fflush(file) != 0) {
         fail_errno(output.path);
     }
 }
 
 void SweepFolder::close(Output& output) {
     std::FILE* file = output.file.get();
-    if (std::fflush(file) != 0 || (fsync(fileno(file)) != 0 && errno != EINVAL))
-        fail_errno(output.path);
+    if (std::fflush(file) != 0 || (fsync(fileno(file)) != 0 && errno != EINVAL)) fail_errno(output.path);
     if (std::fclose(output.file.release()) != 0) fail_errno(output.path);
 }
 
 void SweepFolder::pattern(const PatternRecord& record) {
     write(patterns_, patterns_csv_row(bar_, record));
-    for (const std::string& row : timings_csv_rows(record))
-        write(timings_, row);
+    for (const std::string& row : timings_csv_rows(record)) write(timings_, row);
 }
 
 void SweepFolder::answer(const OrbitAnswer& answer) { this->answer(answer, false); }
@@ -127,15 +125,13 @@ void SweepFolder::answer(const OrbitAnswer& answer, bool only_times) {
         write(levels_, levels_csv_row(bar_, answer));
         if (answer.orbit) write(orbits_, orbit_json(answer, bar_, false, -1));
     }
-    for (const std::string& row : timings_csv_rows(answer))
-        write(timings_, row);
+    for (const std::string& row : timings_csv_rows(answer)) write(timings_, row);
 }
 
 void SweepFolder::progress(long, long) {}
 
 std::string SweepFolder::finish(const SweepSummary& summary) {
-    for (Output* output : {&patterns_, &levels_, &orbits_, &timings_})
-        close(*output);
+    for (Output* output : {&patterns_, &levels_, &orbits_, &timings_}) close(*output);
     std::string table = summary_table(summary);
     table.pop_back();
     for (const auto& [file, text] :
@@ -150,10 +146,8 @@ std::string SweepFolder::finish(const SweepSummary& summary) {
             ".part files",
             folder_.string());
     }
-    for (const char* file : sweep_files)
-        put_in_place(folder_ / file);
-    return fmt::format("{}results are in {}", summary.interrupted ? "interrupted: partial " : "",
-                       folder_.string());
+    for (const char* file : sweep_files) put_in_place(folder_ / file);
+    return fmt::format("{}results are in {}", summary.interrupted ? "interrupted: partial " : "", folder_.string());
 }
 
 }  // namespace nsma

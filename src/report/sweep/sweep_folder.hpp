@@ -13,8 +13,8 @@
 namespace nsma {
 
 /// Files of a sweep in its folder, beside scene.toml; columns and units: data/README.md.
-inline constexpr std::array<const char*, 6> sweep_files{
-    "patterns.csv", "levels.csv", "orbits.jsonl", "timings.csv", "summary.txt", "summary.json"};
+inline constexpr std::array<const char*, 6> sweep_files{"patterns.csv", "levels.csv",  "orbits.jsonl",
+                                                        "timings.csv",  "summary.txt", "summary.json"};
 
 /// Makes the folder if missing and puts the scene in it. Throws InputError when that cannot be
 /// done or the folder holds another scene's results, std::invalid_argument unless scene.text is
@@ -37,7 +37,7 @@ public:
     void pattern(const PatternRecord& record) override;
     void answer(const OrbitAnswer& answer) override;
     void answer(const OrbitAnswer& answer, bool only_times);  ///< only its rows of timings.csv
-    void progress(long done, long total) override;  ///< does nothing
+    void progress(long done, long total) override;            ///< does nothing
 
     /// Writes the summary and puts the files in place; returns one line for the user. An
     /// interrupted sweep does not replace complete results of the same scene: its rows then

@@ -17,18 +17,16 @@ namespace {
 namespace fs = std::filesystem;
 
 Pattern read_pattern(const CsvTable& table, const Scene& scene) {
-    const Pattern pattern{table.integer("cells"), table.integer("free_steps"),
-                          table.integer("contact_steps")};
-    if (pattern.cells != scene.mesh.cells)
-        table.fail("cells", fmt::format("the scene's {}", scene.mesh.cells));
+    const Pattern pattern{table.integer("cells"), table.integer("free_steps"), table.integer("contact_steps")};
+    if (pattern.cells != scene.mesh.cells) table.fail("cells", fmt::format("the scene's {}", scene.mesh.cells));
     if (pattern.free_steps < 1) table.fail("free_steps", "an integer >= 1");
     if (pattern.contact_steps < 1) table.fail("contact_steps", "an integer >= 1");
     return pattern;
 }
 
 Verdict read_verdict(const CsvTable& table) {
-    for (const Verdict verdict : {Verdict::trivial, Verdict::inadmissible, Verdict::below,
-                                  Verdict::above, Verdict::undecided, Verdict::admissible, Verdict::failed}) {
+    for (const Verdict verdict : {Verdict::trivial, Verdict::inadmissible, Verdict::below, Verdict::above,
+                                  Verdict::undecided, Verdict::admissible, Verdict::failed}) {
         if (table.text("verdict") == name(verdict)) return verdict;
     }
     table.fail("verdict", "a verdict");
@@ -60,8 +58,7 @@ std::vector<StoredLevel> read_levels(const fs::path& file, const Scene& scene) {
     const bool closed = scene.bar.gap_sign() == 0;
     for (CsvTable table(file); table.next();) {
         StoredLevel level{read_pattern(table, scene), table.number("level"), read_verdict(table),
-                          table.number(closed ? "energy_joule" : "energy_ratio"),
-                          table.text("agreement")};
+                          table.number(closed ? "energy_joule" : "energy_ratio"), table.text("agreement")};
         if (closed && level.energy) *level.energy /= scene.bar.energy_unit();
         levels.push_back(std::move(level));
     }
@@ -88,9 +85,7 @@ StoredOrbit read_orbit(const nlohmann::json& json, const Scene& scene) {
 std::vector<StoredOrbit> read_orbits(const fs::path& file, const Scene& scene) {
     errno = 0;
     std::ifstream stream(file);
-    if (!stream)
-        throw InputError(
-            one_line(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno))));
+    if (!stream) throw InputError(one_line(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno))));
     std::vector<StoredOrbit> orbits;
     int number = 0;
     for (std::string line; std::getline(stream, line);) {
@@ -98,9 +93,8 @@ std::vector<StoredOrbit> read_orbits(const fs::path& file, const Scene& scene) {
         try {
             orbits.push_back(read_orbit(nlohmann::json::parse(line), scene));
         } catch (const std::exception& error) {
-            throw InputError(
-                one_line(fmt::format("{}:{}: expected an orbit as one JSON object, got: {}",
-                                     file.string(), number, error.what())));
+            throw InputError(one_line(fmt::format("{}:{}: expected an orbit as one JSON object, got: {}", file.string(),
+                                                  number, error.what())));
         }
     }
     return orbits;
@@ -114,8 +108,8 @@ StoredSweep read_store(const fs::path& folder) {
         if (result.record) sweep.patterns.push_back(std::move(*result.record));
         if (!result.answer) return;
         OrbitAnswer& answer = *result.answer;
-        sweep.levels.push_back({answer.pattern, answer.level, answer.verdict, answer.energy,
-                                std::string(name(answer.agreement))});
+        sweep.levels.push_back(
+            {answer.pattern, answer.level, answer.verdict, answer.energy, std::string(name(answer.agreement))});
         if (answer.orbit) {
             sweep.orbits.push_back({answer.level, answer.energy.value_or(0.0), std::move(*answer.orbit)});
         }
@@ -128,16 +122,14 @@ StoredSweep read_store(const fs::path& folder) {
 StoredSweep read_sweep_folder(const fs::path& folder) {
     std::error_code code;
     if (!fs::is_directory(folder, code)) {
-        throw InputError(
-            one_line(fmt::format("{}: expected the folder of a sweep, got {}", folder.string(),
-                                 fs::exists(folder, code) ? "a file" : "nothing")));
+        throw InputError(one_line(fmt::format("{}: expected the folder of a sweep, got {}", folder.string(),
+                                              fs::exists(folder, code) ? "a file" : "nothing")));
     }
     if (SweepStore::in(folder)) return read_store(folder);
     for (const char* file : {"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl"}) {
         if (!fs::exists(folder / file, code)) {
             throw InputError(one_line(
-                fmt::format("{}: expected the folder of a finished sweep, got one without {}",
-                            folder.string(), file)));
+                fmt::format("{}: expected the folder of a finished sweep, got one without {}", folder.string(), file)));
         }
     }
     StoredSweep sweep;

@@ -70,7 +70,8 @@ std::string columns_sql(const std::vector<std::string>& names) {
 
 std::string insert_sql(const std::string& table, const std::string& keys, const std::vector<std::string>& names) {
     std::string marks = "?";
-    for (std::size_t i = 0; i < static_cast<std::size_t>(std::count(keys.begin(), keys.end(), ',')) + names.size(); ++i) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(std::count(keys.begin(), keys.end(), ',')) + names.size();
+         ++i) {
         marks += ",?";
     }
     return fmt::format("INSERT OR IGNORE INTO {} ({}{}) VALUES ({})", table, keys, columns_sql(names), marks);
@@ -172,7 +173,8 @@ struct SweepStore::Implementation {
     }
 
     void close() {
-        for (auto* statement : {&add_pattern, &add_answer, &add_run, &add_orbit, &begin, &commit, &rollback}) statement->reset();
+        for (auto* statement : {&add_pattern, &add_answer, &add_run, &add_orbit, &begin, &commit, &rollback})
+            statement->reset();
         database.reset();
     }
 
@@ -205,19 +207,27 @@ struct SweepStore::Implementation {
                 database->exec(fmt::format("DROP TABLE IF EXISTS {}", table));
             }
             database->exec("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID");
-            database->exec(fmt::format("CREATE TABLE patterns (number INTEGER PRIMARY KEY{})",
-                                       columns_sql(pattern_columns())));
-            database->exec(fmt::format("CREATE TABLE answers (pattern INTEGER, place INTEGER{}, PRIMARY KEY (pattern, place))",
-                                       columns_sql(answer_columns())));
-            database->exec(fmt::format(
-                "CREATE TABLE solves (pattern INTEGER, place INTEGER, run INTEGER{}, PRIMARY KEY (pattern, place, run))",
-                columns_sql(run_columns())));
-            database->exec("CREATE TABLE orbits (pattern INTEGER, place INTEGER, beta TEXT, PRIMARY KEY (pattern, place))");
+            database->exec(
+                fmt::format("CREATE TABLE patterns (number INTEGER PRIMARY KEY{})", columns_sql(pattern_columns())));
+            database->exec(
+                fmt::format("CREATE TABLE answers (pattern INTEGER, place INTEGER{}, PRIMARY KEY (pattern, place))",
+                            columns_sql(answer_columns())));
+            database->exec(
+                fmt::format("CREATE TABLE solves (pattern INTEGER, place INTEGER, run INTEGER{}, PRIMARY KEY (pattern, "
+                            "place, run))",
+                            columns_sql(run_columns())));
+            database->exec(
+                "CREATE TABLE orbits (pattern INTEGER, place INTEGER, beta TEXT, PRIMARY KEY (pattern, place))");
             database->exec(view_sql);
-            for (const auto& [key, value] :
-                 {std::pair<const char*, std::string>{"format", format}, {"scene", scene.text},
-                  {"scene_hash", hash_of(scene.text)}, {"title", scene.title}, {"software", versions.software},
-                  {"options", versions.options}, {"kinds", scene.all_kinds ? "all" : "contact"}, {"complete", "0"}, {"seconds", "0"}}) {
+            for (const auto& [key, value] : {std::pair<const char*, std::string>{"format", format},
+                                             {"scene", scene.text},
+                                             {"scene_hash", hash_of(scene.text)},
+                                             {"title", scene.title},
+                                             {"software", versions.software},
+                                             {"options", versions.options},
+                                             {"kinds", scene.all_kinds ? "all" : "contact"},
+                                             {"complete", "0"},
+                                             {"seconds", "0"}}) {
                 set_info(key, value);
             }
             transaction.commit();
@@ -231,8 +241,9 @@ struct SweepStore::Implementation {
         };
         if (info("format") != format) refuse("format of the store", info("format"), format);
         if (info("scene") != scene.text) {
-            fail(file, fmt::format("holds results of another scene (hash {}, not {}); choose another folder or remove it",
-                                   info("scene_hash"), hash_of(scene.text)));
+            fail(file,
+                 fmt::format("holds results of another scene (hash {}, not {}); choose another folder or remove it",
+                             info("scene_hash"), hash_of(scene.text)));
         }
         if (info("software") != versions.software) refuse("software", info("software"), versions.software);
         if (info("options") != versions.options) refuse("options", info("options"), versions.options);
@@ -255,7 +266,8 @@ struct SweepStore::Implementation {
         statement->reset();
     }
 
-    void add(std::optional<SQLite::Statement>& statement, const WorkResult& result, int keys, int number, const Row& row) {
+    void add(std::optional<SQLite::Statement>& statement, const WorkResult& result, int keys, int number,
+             const Row& row) {
         statement->bind(1, static_cast<std::int64_t>(result.pattern));
         if (keys > 1) statement->bind(2, result.place);
         if (keys > 2) statement->bind(3, number);
@@ -326,9 +338,7 @@ double SweepStore::seconds() const {
     return numbers.empty() ? 0.0 : numbers.front();
 }
 
-void SweepStore::add_seconds(double more) {
-    implementation_->set_info("seconds", fmt::format("{}", seconds() + more));
-}
+void SweepStore::add_seconds(double more) { implementation_->set_info("seconds", fmt::format("{}", seconds() + more)); }
 
 void SweepStore::put(const std::vector<WorkResult>& results) {
     auto& self = *implementation_;
@@ -353,16 +363,20 @@ void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
     SQLite::Database& database = *self.database;
     std::optional<SQLite::Statement> patterns, answers, runs, orbit;
     self.guarded("read", [&] {
-        patterns.emplace(database, fmt::format("SELECT number{} FROM patterns ORDER BY number", columns_sql(pattern_columns())));
-        answers.emplace(database, fmt::format("SELECT place{} FROM answers WHERE pattern = ? ORDER BY place", columns_sql(answer_columns())));
-        runs.emplace(database, fmt::format("SELECT run{} FROM solves WHERE pattern = ? AND place = ? ORDER BY run", columns_sql(run_columns())));
+        patterns.emplace(database,
+                         fmt::format("SELECT number{} FROM patterns ORDER BY number", columns_sql(pattern_columns())));
+        answers.emplace(database, fmt::format("SELECT place{} FROM answers WHERE pattern = ? ORDER BY place",
+                                              columns_sql(answer_columns())));
+        runs.emplace(database, fmt::format("SELECT run{} FROM solves WHERE pattern = ? AND place = ? ORDER BY run",
+                                           columns_sql(run_columns())));
         orbit.emplace(database, "SELECT beta FROM orbits WHERE pattern = ? AND place = ?");
     });
     // One result at a time; `visit` may throw what it likes.
     const auto next_pattern = [&]() -> std::optional<WorkResult> {
         return self.guarded("read", [&]() -> std::optional<WorkResult> {
             if (!patterns->executeStep()) return std::nullopt;
-            return WorkResult{static_cast<long>(patterns->getColumn(0).getInt64()), -1, pattern_record_of(row_of(*patterns, 1)), std::nullopt};
+            return WorkResult{static_cast<long>(patterns->getColumn(0).getInt64()), -1,
+                              pattern_record_of(row_of(*patterns, 1)), std::nullopt};
         });
     };
     const auto next_answer = [&](long pattern) -> std::optional<WorkResult> {
@@ -397,7 +411,8 @@ void SweepStore::finish() {
     auto& self = *implementation_;
     if (self.file.filename() != part_name) return;
     self.set_info("complete", "1");
-    for (auto* statement : {&self.add_pattern, &self.add_answer, &self.add_run, &self.add_orbit, &self.begin, &self.commit, &self.rollback}) {
+    for (auto* statement : {&self.add_pattern, &self.add_answer, &self.add_run, &self.add_orbit, &self.begin,
+                            &self.commit, &self.rollback}) {
         statement->reset();
     }
     self.guarded("written", [&] {
@@ -433,7 +448,8 @@ public:
         if (!motion) return false;
         bool known = false;
         const auto numbers = fingerprints(*motion);
-        for (std::size_t grid = 0; grid < numbers.size(); ++grid) known = !seen_.at(grid).emplace(place, numbers.at(grid)).second || known;
+        for (std::size_t grid = 0; grid < numbers.size(); ++grid)
+            known = !seen_.at(grid).emplace(place, numbers.at(grid)).second || known;
         return known;
     }
 

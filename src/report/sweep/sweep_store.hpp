@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "nsma/report/scene_file.hpp"
 #include "study/sweep/sweep_work.hpp"
+#include "nsma/report/scene_file.hpp"
 
 namespace nsma {
 
@@ -42,7 +42,7 @@ public:
     [[nodiscard]] const Scene& scene() const;
     [[nodiscard]] bool complete() const;
     [[nodiscard]] bool beside_complete() const;  ///< a part file, with complete results beside it
-    [[nodiscard]] double seconds() const;  ///< time spent on it, over all runs that ended in order
+    [[nodiscard]] double seconds() const;        ///< time spent on it, over all runs that ended in order
     void add_seconds(double seconds);
     /// Marks the sweep as complete and gives the file its final name.
     void finish();
@@ -56,12 +56,13 @@ private:
 };
 
 /// Writes patterns.csv, levels.csv, orbits.jsonl, timings.csv and the summary of a store into
-/// its folder, each complete or not at all; a part file never replaces complete results. `distinct` leaves answers out whose
-/// motion one before at the same level has under another label. `line` tells the user where they are.
+/// its folder, each complete or not at all; a part file never replaces complete results. `distinct` leaves answers out
+/// whose motion one before at the same level has under another label. `line` tells the user where they are.
 struct Exported {
     SweepSummary summary;
     std::string line;
 };
-[[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder, bool distinct = false);
+[[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder,
+                                    bool distinct = false);
 
 }  // namespace nsma

@@ -29,9 +29,8 @@ std::optional<double> greatest(const EnergyInterval& interval) {
 }
 
 std::string pattern_fields(const Bar& bar, const Pattern& pattern, int dimension) {
-    return fmt::format("{},{},{},{},{},{},{}", pattern.cells, csv_number(bar.gap),
-                       pattern.free_steps, pattern.contact_steps, pattern.period_steps(), dimension,
-                       csv_number(pattern.frequency_ratio()));
+    return fmt::format("{},{},{},{},{},{},{}", pattern.cells, csv_number(bar.gap), pattern.free_steps,
+                       pattern.contact_steps, pattern.period_steps(), dimension, csv_number(pattern.frequency_ratio()));
 }
 
 std::string_view kind_text(const std::optional<PatternKind>& kind) { return kind ? name(*kind) : std::string_view(); }
@@ -52,34 +51,32 @@ std::string scan_csv_row(const Bar& bar, const PatternRecord& record) {
 
 std::string scan_table(const Bar& bar, const std::vector<PatternRecord>& records) {
     const bool closed = bar.gap_sign() == 0;
-    std::string table =
-        fmt::format("{:>8} {:>8} {:>8} {:>5} {:>10} {:>10}  {:<12} {:<8} {:>12} {:>12}\n", "free r",
-                    "contact p", "period", "m", "T/tau", "w/w1", "verdict", "kind",
-                    closed ? "E_min [J]" : "E_min/E_g", closed ? "E_max [J]" : "E_max/E_g");
+    std::string table = fmt::format("{:>8} {:>8} {:>8} {:>5} {:>10} {:>10}  {:<12} {:<8} {:>12} {:>12}\n", "free r",
+                                    "contact p", "period", "m", "T/tau", "w/w1", "verdict", "kind",
+                                    closed ? "E_min [J]" : "E_min/E_g", closed ? "E_max [J]" : "E_max/E_g");
     for (const PatternRecord& record : records) {
         const Pattern& pattern = record.pattern;
-        table += fmt::format(
-            "{:>8} {:>9} {:>8} {:>5} {:>10.6g} {:>10.6g}  {:<12} {:<8} {:>12} {:>12}\n",
-            pattern.free_steps, pattern.contact_steps, pattern.period_steps(),
-            record.kernel_dimension, pattern.period_ratio(), pattern.frequency_ratio(),
-            name(record.verdict), record.kind ? name(*record.kind) : "-", terminal_number(record.interval.least),
-            record.interval.unbounded ? "inf" : terminal_number(record.interval.greatest));
+        table += fmt::format("{:>8} {:>9} {:>8} {:>5} {:>10.6g} {:>10.6g}  {:<12} {:<8} {:>12} {:>12}\n",
+                             pattern.free_steps, pattern.contact_steps, pattern.period_steps(), record.kernel_dimension,
+                             pattern.period_ratio(), pattern.frequency_ratio(), name(record.verdict),
+                             record.kind ? name(*record.kind) : "-", terminal_number(record.interval.least),
+                             record.interval.unbounded ? "inf" : terminal_number(record.interval.greatest));
     }
     return table;
 }
 
 std::string patterns_csv_header() {
-    return std::string(scan_columns) + ",energy_min_joule,energy_max_joule,energy_unbounded,proved,"
+    return std::string(scan_columns) +
+           ",energy_min_joule,energy_max_joule,energy_unbounded,proved,"
            "energy_min_exact,energy_max_exact,energy_bound,reason";
 }
 
 std::string patterns_csv_row(const Bar& bar, const PatternRecord& record) {
     const EnergyInterval& interval = record.interval;
-    return fmt::format("{},{},{},{},{},{},{},{},{}", scan_csv_row(bar, record),
-                       csv_number(joule(bar, interval.least)),
-                       csv_number(joule(bar, greatest(interval))), interval.unbounded,
-                       record.proved, interval.least_exact, interval.greatest_exact,
-                       csv_number(interval.bound), csv_text(record.reason));
+    return fmt::format("{},{},{},{},{},{},{},{},{}", scan_csv_row(bar, record), csv_number(joule(bar, interval.least)),
+                       csv_number(joule(bar, greatest(interval))), interval.unbounded, record.proved,
+                       interval.least_exact, interval.greatest_exact, csv_number(interval.bound),
+                       csv_text(record.reason));
 }
 
 std::string levels_csv_header() {
@@ -111,8 +108,8 @@ std::string levels_csv_row(const Bar& bar, const OrbitAnswer& answer) {
     add(csv_number(answer.objective_difference));
     if (answer.replay) {
         const Violations& violations = answer.replay->violations;
-        for (const double value : {violations.periodicity, violations.cond1, violations.cond2,
-                                   violations.cond3, violations.energy}) {
+        for (const double value :
+             {violations.periodicity, violations.cond1, violations.cond2, violations.cond3, violations.energy}) {
             add(csv_number(value));
         }
     } else {
@@ -120,8 +117,8 @@ std::string levels_csv_row(const Bar& bar, const OrbitAnswer& answer) {
     }
     if (answer.classification) {
         const Classification& kind = *answer.classification;
-        add(fmt::format("{},{},{},{}", kind.minimal_period_steps, kind.silent_contact_steps,
-                        kind.wall_touches, kind.full_support));
+        add(fmt::format("{},{},{},{}", kind.minimal_period_steps, kind.silent_contact_steps, kind.wall_touches,
+                        kind.full_support));
     } else {
         row += ",,,,";
     }
@@ -151,24 +148,21 @@ std::string levels_csv_row(const Bar& bar, const OrbitAnswer& answer) {
     return row;
 }
 
-std::string timings_csv_header() {
-    return "free_steps,contact_steps,level,what,start,status,iterations,seconds";
-}
+std::string timings_csv_header() { return "free_steps,contact_steps,level,what,start,status,iterations,seconds"; }
 
 std::vector<std::string> timings_csv_rows(const PatternRecord& record) {
-    return {fmt::format("{},{},,pattern,,{},,{}", record.pattern.free_steps,
-                        record.pattern.contact_steps, name(record.verdict),
-                        csv_number(record.seconds))};
+    return {fmt::format("{},{},,pattern,,{},,{}", record.pattern.free_steps, record.pattern.contact_steps,
+                        name(record.verdict), csv_number(record.seconds))};
 }
 
 std::vector<std::string> timings_csv_rows(const OrbitAnswer& answer) {
-    const std::string start = fmt::format("{},{},{}", answer.pattern.free_steps,
-                                          answer.pattern.contact_steps, csv_number(answer.level));
+    const std::string start =
+        fmt::format("{},{},{}", answer.pattern.free_steps, answer.pattern.contact_steps, csv_number(answer.level));
     std::vector<std::string> rows{
         fmt::format("{},answer,,{},,{}", start, name(answer.verdict), csv_number(answer.seconds))};
     for (const SolverRun& run : answer.solvers) {
-        rows.push_back(fmt::format("{},{},{},{},{},{}", start, csv_text(run.name), run.start,
-                                   csv_text(run.status), run.iterations, csv_number(run.seconds)));
+        rows.push_back(fmt::format("{},{},{},{},{},{}", start, csv_text(run.name), run.start, csv_text(run.status),
+                                   run.iterations, csv_number(run.seconds)));
     }
     return rows;
 }
@@ -183,7 +177,8 @@ std::string summary_table(const SweepSummary& summary) {
     count("  trivial (no free amplitude)", summary.trivial);
     count("  inadmissible", summary.inadmissible);
     count("  admissible", summary.admissible);
-    const char* const meaning[] = {"    contact: press and leave the wall", "    free: graze it without force", "    stuck: never leave it"};
+    const char* const meaning[] = {"    contact: press and leave the wall", "    free: graze it without force",
+                                   "    stuck: never leave it"};
     for (std::size_t kind = 0; kind < summary.kinds.size(); ++kind) count(meaning[kind], summary.kinds[kind]);
     count("    left, being no contact motion", summary.left);
     count("  failed", summary.failed_patterns);
@@ -209,10 +204,9 @@ std::string summary_table(const SweepSummary& summary) {
 }
 
 const SolverRun* best_run(const OrbitAnswer& answer, std::string_view solver) {
-    const auto run = std::find_if(
-        answer.solvers.begin(), answer.solvers.end(), [solver](const SolverRun& candidate) {
-            return std::string_view(candidate.name).substr(0, solver.size()) == solver;
-        });
+    const auto run = std::find_if(answer.solvers.begin(), answer.solvers.end(), [solver](const SolverRun& candidate) {
+        return std::string_view(candidate.name).substr(0, solver.size()) == solver;
+    });
     return run == answer.solvers.end() ? nullptr : &*run;
 }
 

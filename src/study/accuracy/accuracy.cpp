@@ -5,16 +5,16 @@
 #include <string>
 
 #include "accuracy_parts.hpp"
-#include "nsma/orbit/backbone.hpp"
 #include "program_methods.hpp"
+#include "nsma/orbit/backbone.hpp"
 
 namespace nsma {
 namespace {
 
-// Levels of the programs: at the first two no amplitude is zero and a polished answer is proved by the Lagrangian, at the
-// last all but two are zero and only the closed form proves it.
-constexpr double levels_of_least[] = {1.1, 1.3};    // times E_min
-constexpr double levels_of_greatest[] = {0.8};      // times E_max
+// Levels of the programs: at the first two no amplitude is zero and a polished answer is proved by the Lagrangian, at
+// the last all but two are zero and only the closed form proves it.
+constexpr double levels_of_least[] = {1.1, 1.3};  // times E_min
+constexpr double levels_of_greatest[] = {0.8};    // times E_max
 // Beyond this size a derivative-free method only meets its limit.
 constexpr int derivative_free_limit = 32;
 constexpr int quick_derivative_free_limit = 2;
@@ -43,7 +43,8 @@ ProgramRecord measure(const ProgramMethod& method, const std::vector<ProgramCase
         int runs = 0;
         for (const auto& one : cases) {
             for (int start = 0; start < (own_start ? 1 : sizes.starts); ++start) {
-                const Trial trial = runner.run(one, one.program.program, one.program.point(one.points.start(start).value()));
+                const Trial trial =
+                    runner.run(one, one.program.program, one.program.point(one.points.start(start).value()));
                 total += trial.seconds;
                 ++runs;
                 if (repeat > 0) continue;
@@ -69,9 +70,14 @@ ProgramRecord measure(const ProgramMethod& method, const std::vector<ProgramCase
 
 AccuracySizes accuracy_sizes(const AccuracyOptions& options) {
     if (options.quick) return {{2, 8}, {2, 8}, {5, 10, 20}, {2, 8}, {10, 100}, 10, 1, 2};
-    return {{2, 8, 32, 128},       {2, 4, 8, 16, 32},     {5, 10, 20, 40, 80, 160, 320},
-            {2, 8, 32, 64},        {10, 1'000, 100'000},  20,
-            5,                     3};
+    return {{2, 8, 32, 128},
+            {2, 4, 8, 16, 32},
+            {5, 10, 20, 40, 80, 160, 320},
+            {2, 8, 32, 64},
+            {10, 1'000, 100'000},
+            20,
+            5,
+            3};
 }
 
 Pattern accuracy_pattern(int size, int gap_sign) {
@@ -116,10 +122,12 @@ bool accuracy(const Scene& scene, const AccuracyOptions& options, AccuracySink& 
               const std::function<bool()>& keep_going) {
     validate(scene.bar);
     if (scene.bar.gap_sign() == 0) {
-        throw std::invalid_argument("gap: expected one that is not zero: a closed gap has no energy interval to study, got 0");
+        throw std::invalid_argument(
+            "gap: expected one that is not zero: a closed gap has no energy interval to study, got 0");
     }
     if (is_extreme(scene.objective)) {
-        throw std::invalid_argument("objective: expected one at a given energy, got " + std::string(name(scene.objective)));
+        throw std::invalid_argument("objective: expected one at a given energy, got " +
+                                    std::string(name(scene.objective)));
     }
     AccuracyRun run(scene, options, sink, keep_going);
     run.expect(static_cast<long>(run.sizes.programs.size() * (1 + program_methods(run.quick).size())));

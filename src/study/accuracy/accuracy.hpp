@@ -14,14 +14,14 @@ struct AccuracyOptions {
 
 /// What the study runs on, by size; a closed gap has no such patterns.
 struct AccuracySizes {
-    std::vector<int> programs;          ///< m of the first-mode programs
-    std::vector<int> maps;              ///< m of the level map
-    std::vector<int> cells;             ///< N of marching, finite elements likewise
-    std::vector<int> kernels;           ///< m of the kernels, N = 5 m/2
-    std::vector<int> periods;           ///< of the drift study
+    std::vector<int> programs;  ///< m of the first-mode programs
+    std::vector<int> maps;      ///< m of the level map
+    std::vector<int> cells;     ///< N of marching, finite elements likewise
+    std::vector<int> kernels;   ///< m of the kernels, N = 5 m/2
+    std::vector<int> periods;   ///< of the drift study
     int drift_cells = 20;
-    int repeats = 5;                    ///< timed runs of the same work
-    int starts = 3;                     ///< starts of each program
+    int repeats = 5;  ///< timed runs of the same work
+    int starts = 3;   ///< starts of each program
 };
 [[nodiscard]] AccuracySizes accuracy_sizes(const AccuracyOptions& options);
 

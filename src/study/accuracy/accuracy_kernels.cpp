@@ -7,8 +7,8 @@
 namespace nsma {
 namespace {
 
-constexpr KernelMethod methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd,
-                                    KernelMethod::divided_svd, KernelMethod::rank_revealing_qr, KernelMethod::matrix_powers};
+constexpr KernelMethod methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd, KernelMethod::divided_svd,
+                                    KernelMethod::rank_revealing_qr, KernelMethod::matrix_powers};
 constexpr double slow_run = 0.5;  // seconds; one run of such work is enough
 
 }  // namespace
@@ -39,14 +39,17 @@ void study_kernels(AccuracyRun& run) {
         }
         if (!run.go_on()) return;
         Eigen::VectorXd tolerances(17);
-        for (Eigen::Index i = 0; i < tolerances.size(); ++i) tolerances[i] = std::pow(10.0, static_cast<double>(i) - 17.0);
+        for (Eigen::Index i = 0; i < tolerances.size(); ++i)
+            tolerances[i] = std::pow(10.0, static_cast<double>(i) - 17.0);
         for (const KernelMethod method : {KernelMethod::dense_svd, KernelMethod::rank_revealing_qr}) {
             // The neighbour shares few divisors with the window: long cycles, whose singular values
             // come near zero.
-            for (const Pattern& one : {pattern, Pattern{pattern.cells, pattern.free_steps - 1, pattern.contact_steps}}) {
+            for (const Pattern& one :
+                 {pattern, Pattern{pattern.cells, pattern.free_steps - 1, pattern.contact_steps}}) {
                 const Eigen::VectorXi found = dimensions_found(method, bar, one, tolerances);
                 for (Eigen::Index i = 0; i < found.size(); ++i) {
-                    run.sink.tolerance({one, std::string(name(method)), tolerances[i], found[i], kernel_dimension(one)});
+                    run.sink.tolerance(
+                        {one, std::string(name(method)), tolerances[i], found[i], kernel_dimension(one)});
                 }
             }
         }

@@ -3,19 +3,19 @@
 #include <tuple>
 
 #include "accuracy_parts.hpp"
-#include "nsma/orbit/orbit.hpp"
-#include "nsma/orbit/replay.hpp"
-#include "nsma/search/orbit_solver.hpp"
 #include "finite_elements.hpp"
 #include "program_methods.hpp"
 #include "wave/dense_wfem.hpp"
 #include "wave/wave_queue.hpp"
+#include "nsma/orbit/orbit.hpp"
+#include "nsma/orbit/replay.hpp"
+#include "nsma/search/orbit_solver.hpp"
 
 namespace nsma {
 namespace {
 
-constexpr int dense_limit = 80;             // cells; beyond it a dense step only costs time
-constexpr double drift_work_limit = 4e9;    // multiplications of one march
+constexpr int dense_limit = 80;           // cells; beyond it a dense step only costs time
+constexpr double drift_work_limit = 4e9;  // multiplications of one march
 
 // The exact orbit that every method marches: the first nonsmooth mode on N = 5 j cells.
 struct Reference {
@@ -67,12 +67,13 @@ struct FiniteElementSetting {
 std::vector<FiniteElementSetting> finite_element_settings(int elements) {
     using Scheme = FiniteElementScheme;
     // Stable below c dt/h = 0.91 at stiffness 1 and 0.42 at 10 (the tip against the wall).
-    return {{{Scheme::central_penalty, elements, 0.9, 1.0, 0.0, 0.5}, "FE central, penalty", "c dt/h 0.9, stiffness 1"},
-            {{Scheme::central_penalty, elements, 0.1, 1.0, 0.0, 0.5}, "FE central, penalty", "c dt/h 0.1, stiffness 1"},
-            {{Scheme::central_penalty, elements, 0.25, 10.0, 0.0, 0.5}, "FE central, penalty", "c dt/h 0.25, stiffness 10"},
-            {{Scheme::moreau_jean, elements, 1.0, 1.0, 0.0, 0.5}, "FE Moreau-Jean", "c dt/h 1, e 0"},
-            {{Scheme::moreau_jean, elements, 0.25, 1.0, 0.0, 0.5}, "FE Moreau-Jean", "c dt/h 0.25, e 0"},
-            {{Scheme::moreau_jean, elements, 0.25, 1.0, 1.0, 0.5}, "FE Moreau-Jean", "c dt/h 0.25, e 1"}};
+    return {
+        {{Scheme::central_penalty, elements, 0.9, 1.0, 0.0, 0.5}, "FE central, penalty", "c dt/h 0.9, stiffness 1"},
+        {{Scheme::central_penalty, elements, 0.1, 1.0, 0.0, 0.5}, "FE central, penalty", "c dt/h 0.1, stiffness 1"},
+        {{Scheme::central_penalty, elements, 0.25, 10.0, 0.0, 0.5}, "FE central, penalty", "c dt/h 0.25, stiffness 10"},
+        {{Scheme::moreau_jean, elements, 1.0, 1.0, 0.0, 0.5}, "FE Moreau-Jean", "c dt/h 1, e 0"},
+        {{Scheme::moreau_jean, elements, 0.25, 1.0, 0.0, 0.5}, "FE Moreau-Jean", "c dt/h 0.25, e 0"},
+        {{Scheme::moreau_jean, elements, 0.25, 1.0, 1.0, 0.5}, "FE Moreau-Jean", "c dt/h 0.25, e 1"}};
 }
 
 MarchRecord measure(const Reference& reference, const FiniteElementSetting& setting, int repeats) {
@@ -99,8 +100,8 @@ MarchRecord measure(const Reference& reference, const FiniteElementSetting& sett
         record.tip_error = 0;
         for (int n = 0; n < bar.steps(); ++n) {
             const double share = static_cast<double>(n + 1) / bar.steps();
-            record.tip_error = std::max(record.tip_error,
-                                        std::abs(tips[static_cast<std::size_t>(n)] - reference.tip_at(share)));
+            record.tip_error =
+                std::max(record.tip_error, std::abs(tips[static_cast<std::size_t>(n)] - reference.tip_at(share)));
         }
         record.tip_error /= reference.bar.displacement_unit();
         record.contact_error = std::abs(contact_steps * bar.time_step() / reference.contact_time - 1.0);
@@ -120,7 +121,8 @@ DriftRecord drift(const Reference& reference, const FiniteElementSetting& settin
     for (long n = 0; n < steps; ++n) bar.step();
     record.seconds = cpu_seconds() - begin;
     record.energy_drift = std::abs(bar.energy() / energy - 1.0);
-    record.periodicity_defect = std::sqrt(bar.energy_of(bar.displacement() - displacement, bar.velocity() - velocity) / energy);
+    record.periodicity_defect =
+        std::sqrt(bar.energy_of(bar.displacement() - displacement, bar.velocity() - velocity) / energy);
     return record;
 }
 
@@ -169,7 +171,8 @@ State advance(const Reference& reference, WaveMethod method, int periods, double
         state = queue.state();
     } else if (method == WaveMethod::cells) {
         for (int k = 0; k < periods; ++k) {
-            for (int n = 0; n < pattern.period_steps(); ++n) dense::cell_step(bar, mesh, n >= pattern.free_steps, state);
+            for (int n = 0; n < pattern.period_steps(); ++n)
+                dense::cell_step(bar, mesh, n >= pattern.free_steps, state);
         }
     } else if (method == WaveMethod::repeated) {
         const Eigen::MatrixXd flight = dense::free_step_matrix(bar, mesh);
@@ -218,8 +221,9 @@ MarchRecord measure(const Reference& reference, WaveMethod method, int repeats) 
     if (method == WaveMethod::queue) {
         const MarchReport report = march(reference.bar, reference.mesh, reference.state, record.steps);
         for (int n = 0; n < record.steps; ++n) {
-            record.tip_error = std::max(record.tip_error,
-                                        std::abs(report.first_period[static_cast<std::size_t>(n)].tip - reference.tips[n]) / unit);
+            record.tip_error =
+                std::max(record.tip_error,
+                         std::abs(report.first_period[static_cast<std::size_t>(n)].tip - reference.tips[n]) / unit);
         }
         record.contact_error = std::abs(1.0 * report.contact_steps / reference.pattern().contact_steps - 1.0);
     } else {

@@ -33,9 +33,9 @@ private:
     long total_ = 0;
 };
 
-void study_programs(AccuracyRun& run);    ///< every method and setting on each size
-void study_kernels(AccuracyRun& run);     ///< and the tolerances of the dense methods
-void study_marching(AccuracyRun& run);    ///< one period, and the drift over many
-void study_stability(AccuracyRun& run);   ///< the maps
+void study_programs(AccuracyRun& run);   ///< every method and setting on each size
+void study_kernels(AccuracyRun& run);    ///< and the tolerances of the dense methods
+void study_marching(AccuracyRun& run);   ///< one period, and the drift over many
+void study_stability(AccuracyRun& run);  ///< the maps
 
 }  // namespace nsma

@@ -12,13 +12,13 @@ namespace nsma {
 /// What one run of one method came to, judged by replay and by the proved best objective; the
 /// library's own word plays no part.
 enum class Outcome {
-    success,      ///< replayed within tolerance, objective within 1e-6 of the proved best
-    worse,        ///< replayed within tolerance, but a worse orbit: local optimum or early stop
-    off_level,    ///< replay refuses: the energy is not the level asked
-    outside,      ///< replay refuses: COND1, COND2 or COND3 violated
-    other_motion, ///< replay refuses: the marcher sees other contact steps
-    not_finite,   ///< no point, or one with NaN
-    limit         ///< stopped by its limit of time or evaluations, and refused
+    success,       ///< replayed within tolerance, objective within 1e-6 of the proved best
+    worse,         ///< replayed within tolerance, but a worse orbit: local optimum or early stop
+    off_level,     ///< replay refuses: the energy is not the level asked
+    outside,       ///< replay refuses: COND1, COND2 or COND3 violated
+    other_motion,  ///< replay refuses: the marcher sees other contact steps
+    not_finite,    ///< no point, or one with NaN
+    limit          ///< stopped by its limit of time or evaluations, and refused
 };
 inline constexpr int outcome_count = 7;
 [[nodiscard]] std::string_view name(Outcome outcome);         ///< "success", "worse", ...
@@ -42,9 +42,9 @@ struct ProgramRecord {
     std::string setting;
     bool warm = false;  ///< started at the optimum of another level, whose cost is not counted
     int runs = 0;
-    int reported = 0;   ///< the library claims success
-    int succeeded = 0;  ///< Outcome::success
-    int certified = 0;  ///< proved the best by the method's own bound
+    int reported = 0;     ///< the library claims success
+    int succeeded = 0;    ///< Outcome::success
+    int certified = 0;    ///< proved the best by the method's own bound
     bool proved = false;  ///< the best objective of every program is proved
     Spread seconds;
     double iterations = 0;       ///< median
@@ -92,18 +92,18 @@ struct StabilityRecord {
     Pattern pattern;
     int size = 0;
     std::string method;
-    int column = 0;           ///< place along the map's axis, 0-based
-    std::string difficulty;   ///< what is on that axis, e.g. "E_min (1 + 1e-8)"
-    double above_least = 0;   ///< (E - E_min)/E_min
-    double below_greatest = 0;///< (E_max - E)/E_max
+    int column = 0;             ///< place along the map's axis, 0-based
+    std::string difficulty;     ///< what is on that axis, e.g. "E_min (1 + 1e-8)"
+    double above_least = 0;     ///< (E - E_min)/E_min
+    double below_greatest = 0;  ///< (E_max - E)/E_max
     int runs = 0;
     int reported = 0;
-    int false_success = 0;    ///< reported, but not Outcome::success
-    int certified = 0;        ///< proved the best by the method's own bound
+    int false_success = 0;  ///< reported, but not Outcome::success
+    int certified = 0;      ///< proved the best by the method's own bound
     std::array<int, outcome_count> outcomes{};
     bool proved = false;
-    double iterations = 0;    ///< median
-    double seconds = 0;       ///< median, CPU
+    double iterations = 0;  ///< median
+    double seconds = 0;     ///< median, CPU
 };
 
 /// Dimension that a dense method finds at one tolerance.

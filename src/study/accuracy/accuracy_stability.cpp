@@ -5,15 +5,15 @@
 #include <random>
 
 #include "accuracy_parts.hpp"
-#include "program_methods.hpp"
 #include "posed_programs.hpp"
+#include "program_methods.hpp"
 
 namespace nsma {
 namespace {
 
 constexpr double run_limit = 3.0;  // seconds a run of the maps
-// The patterns of the start, unit and row maps beside a first-mode one, for a gap > 0, with E/E_g: contact motions of no
-// mode, one with a closing link, at half its greatest energy, where the level begins to fall into pieces.
+// The patterns of the start, unit and row maps beside a first-mode one, for a gap > 0, with E/E_g: contact motions of
+// no mode, one with a closing link, at half its greatest energy, where the level begins to fall into pieces.
 struct HardProgram {
     Pattern pattern;
     double level;
@@ -36,8 +36,8 @@ struct Place {
 };
 std::vector<Place> places(bool quick) {
     if (quick) return {{true, 1e-8, false}, {true, 0.5, true}, {false, 1e-8, false}};
-    return {{true, 1e-12, false}, {true, 1e-9, false}, {true, 1e-6, false},  {true, 1e-3, false},
-            {true, 0.1, true},    {true, 0.3, true},   {true, 0.5, true},    {true, 0.9, true},
+    return {{true, 1e-12, false}, {true, 1e-9, false},  {true, 1e-6, false},  {true, 1e-3, false},
+            {true, 0.1, true},    {true, 0.3, true},    {true, 0.5, true},    {true, 0.9, true},
             {false, 1e-3, false}, {false, 1e-6, false}, {false, 1e-9, false}, {false, 1e-12, false}};
 }
 std::string label(const Place& place) {
@@ -98,7 +98,8 @@ void level_map(AccuracyRun& run) {
         const PatternProblem problem = pattern_problem(accuracy_pattern(size, bar.gap_sign()), bar.gap_sign());
         for (std::size_t column = 0; column < columns.size(); ++column) {
             if (!run.go_on()) return;
-            const double level = level_at(columns[column], problem.interval.least.value(), problem.interval.greatest.value());
+            const double level =
+                level_at(columns[column], problem.interval.least.value(), problem.interval.greatest.value());
             const ProgramCase on(bar, problem, run.scene.objective, level);
             for (const auto& method : mapped_methods()) {
                 if (!run.go_on()) return;
@@ -120,7 +121,8 @@ void level_map(AccuracyRun& run) {
 }
 
 void start_map(AccuracyRun& run, const ProgramCase& on, int starts) {
-    const std::vector<double> radii = run.quick ? std::vector{1e-3, 1.0} : std::vector{1e-6, 1e-4, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3};
+    const std::vector<double> radii =
+        run.quick ? std::vector{1e-3, 1.0} : std::vector{1e-6, 1e-4, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3};
     for (const auto& method : mapped_methods()) {
         MethodRunner runner(method, run_limit);
         for (std::size_t column = 0; column < radii.size(); ++column) {
@@ -165,7 +167,8 @@ void study_stability(AccuracyRun& run) {
     const auto study = [&](const Pattern& pattern, std::optional<double> level) {
         if (!run.go_on()) return;
         const PatternProblem problem = pattern_problem(pattern, bar.gap_sign());
-        const ProgramCase on(bar, problem, run.scene.objective, level.value_or(easy_level * problem.interval.least.value()));
+        const ProgramCase on(bar, problem, run.scene.objective,
+                             level.value_or(easy_level * problem.interval.least.value()));
         start_map(run, on, run.quick ? 2 : 8);
         posed_map(run, "units", on, scaled_programs(on.program.program, run.quick));
         posed_map(run, "rows", on, redundant_programs(on));

@@ -10,8 +10,7 @@ namespace {
 
 void expect(bool good, const char* name, const char* expected, double got) {
     if (good) return;
-    throw std::invalid_argument(std::string(name) + ": expected " + expected + ", got " +
-                                std::to_string(got));
+    throw std::invalid_argument(std::string(name) + ": expected " + expected + ", got " + std::to_string(got));
 }
 
 // Integral of a function that is constant on each of `values.size()` equal cells of [0, 1] over
@@ -31,8 +30,8 @@ double integral(const Eigen::VectorXd& values, double from, double to) {
 
 }  // namespace
 
-FiniteElementBar::FiniteElementBar(const Bar& bar, const Mesh& mesh, const State& state,
-                                   double duration, const FiniteElementOptions& options)
+FiniteElementBar::FiniteElementBar(const Bar& bar, const Mesh& mesh, const State& state, double duration,
+                                   const FiniteElementOptions& options)
     : options_(options), gap_(bar.gap) {
     validate(bar);
     validate(mesh, state);
@@ -134,8 +133,7 @@ void FiniteElementBar::step() {
     // with 0 <= P _|_ wall speed after the impact, where the tip is forecast to be at the wall.
     const auto last = velocity_.size() - 1;
     const double before = velocity_[last];
-    Eigen::VectorXd after =
-        velocity_ + solve(dt * elastic_force(displacement_ + options_.theta * dt * velocity_));
+    Eigen::VectorXd after = velocity_ + solve(dt * elastic_force(displacement_ + options_.theta * dt * velocity_));
     contact_ = false;
     if (tip() + 0.5 * dt * before >= gap_) {
         const double excess = after[last] + options_.restitution * before;
@@ -153,10 +151,8 @@ Eigen::VectorXd FiniteElementBar::velocity() const {
     return velocity_ + 0.5 * time_step_ * acceleration();
 }
 
-double FiniteElementBar::energy_of(const Eigen::VectorXd& displacement,
-                                   const Eigen::VectorXd& velocity) const {
-    return 0.5 * velocity.dot(mass_.cwiseProduct(velocity)) -
-           0.5 * displacement.dot(elastic_force(displacement));
+double FiniteElementBar::energy_of(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) const {
+    return 0.5 * velocity.dot(mass_.cwiseProduct(velocity)) - 0.5 * displacement.dot(elastic_force(displacement));
 }
 
 double FiniteElementBar::energy() const {

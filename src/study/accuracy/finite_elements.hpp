@@ -35,17 +35,16 @@ public:
 
     void step();
 
-    [[nodiscard]] int steps() const { return steps_; }             ///< time steps in `duration`
-    [[nodiscard]] double time_step() const { return time_step_; }  ///< [s]
+    [[nodiscard]] int steps() const { return steps_; }                                    ///< time steps in `duration`
+    [[nodiscard]] double time_step() const { return time_step_; }                         ///< [s]
     [[nodiscard]] double tip() const { return displacement_[displacement_.size() - 1]; }  ///< [m]
     [[nodiscard]] bool in_contact() const { return contact_; }  ///< the wall pushed in the last step
-    [[nodiscard]] double energy() const;  ///< [J], the penalty spring included
+    [[nodiscard]] double energy() const;                        ///< [J], the penalty spring included
     /// Nodes 1..n from the fixed end.
     [[nodiscard]] const Eigen::VectorXd& displacement() const { return displacement_; }  ///< [m]
     [[nodiscard]] Eigen::VectorXd velocity() const;                                      ///< [m/s]
     /// Energy [J] that displacements and velocities of the nodes would have, without a wall.
-    [[nodiscard]] double energy_of(const Eigen::VectorXd& displacement,
-                                   const Eigen::VectorXd& velocity) const;
+    [[nodiscard]] double energy_of(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) const;
 
 private:
     [[nodiscard]] Eigen::VectorXd elastic_force(const Eigen::VectorXd& displacement) const;
@@ -61,9 +60,9 @@ private:
     int steps_ = 0;
     bool contact_ = false;
     Eigen::VectorXd mass_, displacement_;
-    Eigen::VectorXd velocity_;          // central differences: half a step late
-    Eigen::VectorXd pivot_, ratio_;     // of the tridiagonal matrix M + theta^2 dt^2 K
-    Eigen::VectorXd tip_response_;      // its inverse times the tip's unit vector
+    Eigen::VectorXd velocity_;       // central differences: half a step late
+    Eigen::VectorXd pivot_, ratio_;  // of the tridiagonal matrix M + theta^2 dt^2 K
+    Eigen::VectorXd tip_response_;   // its inverse times the tip's unit vector
 };
 
 }  // namespace nsma

@@ -9,8 +9,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
-#include "nsma/orbit/kernel.hpp"
 #include "wave/dense_wfem.hpp"
+#include "nsma/orbit/kernel.hpp"
 
 namespace nsma {
 namespace {
@@ -50,9 +50,7 @@ MatrixXd cycles_basis(const Pattern& pattern) {
     return basis;
 }
 
-Eigen::VectorXd pivots(const Eigen::ColPivHouseholderQR<MatrixXd>& qr) {
-    return qr.matrixR().diagonal().cwiseAbs();
-}
+Eigen::VectorXd pivots(const Eigen::ColPivHouseholderQR<MatrixXd>& qr) { return qr.matrixR().diagonal().cwiseAbs(); }
 
 Eigen::Index count_zero(const Eigen::VectorXd& values, double tolerance) {
     const double threshold = tolerance * std::max(1.0, values.size() > 0 ? values.maxCoeff() : 1.0);
@@ -120,8 +118,7 @@ Eigen::VectorXi dimensions_found(KernelMethod method, const Bar& bar, const Patt
     } else if (method == KernelMethod::rank_revealing_qr) {
         values = pivots(Eigen::ColPivHouseholderQR<MatrixXd>(periodicity(bar, pattern).transpose()));
     } else {
-        throw std::invalid_argument("method: expected an SVD or rank-revealing QR, got " +
-                                    std::string(name(method)));
+        throw std::invalid_argument("method: expected an SVD or rank-revealing QR, got " + std::string(name(method)));
     }
     Eigen::VectorXi found(tolerances.size());
     for (Eigen::Index i = 0; i < tolerances.size(); ++i) {

@@ -24,16 +24,20 @@ constexpr int nlopt_evaluations = 20'000;
 
 // Which words of the libraries claim an answer.
 bool claims_success(const std::string& status) {
-    static const std::set<std::string> words{
-        "Solve_Succeeded", "Solved_To_Acceptable_Level", "Feasible_Point_Found", "SUCCESS",
-        "STOPVAL_REACHED", "FTOL_REACHED",               "XTOL_REACHED"};
+    static const std::set<std::string> words{"Solve_Succeeded",      "Solved_To_Acceptable_Level",
+                                             "Feasible_Point_Found", "SUCCESS",
+                                             "STOPVAL_REACHED",      "FTOL_REACHED",
+                                             "XTOL_REACHED"};
     return words.count(status) > 0;
 }
 
 bool stopped_by_limit(const std::string& status) {
-    static const std::set<std::string> words{"Maximum_Iterations_Exceeded", "Maximum_CpuTime_Exceeded",
-                                             "Time_Limit_Exceeded", "MAXEVAL_REACHED",
-                                             "MAXTIME_REACHED", "KILLED"};
+    static const std::set<std::string> words{"Maximum_Iterations_Exceeded",
+                                             "Maximum_CpuTime_Exceeded",
+                                             "Time_Limit_Exceeded",
+                                             "MAXEVAL_REACHED",
+                                             "MAXTIME_REACHED",
+                                             "KILLED"};
     return words.count(status) > 0;
 }
 
@@ -103,7 +107,8 @@ std::vector<ProgramMethod> program_methods(bool quick) {
     methods.push_back({Kind::both, NloptMethod::slsqp, "both solvers", 0, true, false});
     methods.push_back({Kind::proof, NloptMethod::slsqp, "default", 0, true, false});
     methods.push_back({Kind::segment, NloptMethod::slsqp, "segment", 0, true, false});
-    const std::vector<double> tolerances = quick ? std::vector{1e-4, 1e-10} : std::vector{1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+    const std::vector<double> tolerances =
+        quick ? std::vector{1e-4, 1e-10} : std::vector{1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
     for (const double tolerance : tolerances) {
         for (const bool polish : {false, true}) {
             for (const bool warm : {false, true}) {
@@ -143,11 +148,15 @@ std::vector<ProgramMethod> mapped_methods() {
 
 ProgramCase::ProgramCase(const Bar& the_bar, const PatternProblem& the_problem, Objective the_objective,
                          double the_level)
-    : bar(the_bar), problem(the_problem), objective(the_objective), level(the_level),
+    : bar(the_bar),
+      problem(the_problem),
+      objective(the_objective),
+      level(the_level),
       reference(objective == Objective::nearest
                     ? reference_window(make_orbit(bar, problem.kernel, problem.set.reduction.beta(problem.set.least)))
                     : Eigen::VectorXd()),
-      program(orbit_program(problem.set.reduction, problem.kernel, objective, level, problem.interval.least.value_or(1.0), reference)),
+      program(orbit_program(problem.set.reduction, problem.kernel, objective, level,
+                            problem.interval.least.value_or(1.0), reference)),
       points(problem.set, level) {
     OrbitSolverOptions thorough;
     thorough.solvers = SolverChoice::proof;
@@ -188,8 +197,7 @@ double ProgramCase::posing_seconds() const {
 MethodRunner::MethodRunner(const ProgramMethod& method, double time_limit) : method_(method) {
     options_.tolerance = method.tolerance;
     options_.time_limit = time_limit;
-    options_.max_iterations =
-        method.kind == ProgramMethod::Kind::ipopt ? ipopt_iterations : nlopt_evaluations / 10;
+    options_.max_iterations = method.kind == ProgramMethod::Kind::ipopt ? ipopt_iterations : nlopt_evaluations / 10;
     OrbitSolverOptions whole;
     whole.solvers = method.kind == ProgramMethod::Kind::both ? SolverChoice::both : SolverChoice::proof;
     if (method.whole()) orbit_solver_ = std::make_unique<OrbitSolver>(whole);

@@ -4,20 +4,20 @@
 #include <string>
 #include <vector>
 
-#include "set/level_points.hpp"
-#include "numerics/solver.hpp"
-#include "search/orbit_program.hpp"
-#include "nsma/search/orbit_solver.hpp"
 #include "accuracy_records.hpp"
+#include "numerics/solver.hpp"
+#include "set/level_points.hpp"
+#include "nsma/search/orbit_solver.hpp"
+#include "search/orbit_program.hpp"
 
 namespace nsma {
 
 /// One way to solve the program of a pattern at a level.
 struct ProgramMethod {
     enum class Kind {
-        both,          ///< OrbitSolver, each solver against the other
-        proof,         ///< OrbitSolver until an answer is proved, without a cross-check
-        segment,       ///< the admissible point of a segment, polished; no solver
+        both,     ///< OrbitSolver, each solver against the other
+        proof,    ///< OrbitSolver until an answer is proved, without a cross-check
+        segment,  ///< the admissible point of a segment, polished; no solver
         ipopt,
         nlopt
     };
@@ -46,15 +46,15 @@ struct ProgramCase {
     Bar bar;
     const PatternProblem& problem;
     Objective objective;
-    double level;           ///< E/E_unit
+    double level;               ///< E/E_unit
     Eigen::VectorXd reference;  ///< window of `nearest`: the least-energy orbit
     OrbitProgram program;
     LevelPoints points;
-    double best = 0;        ///< objective of the best orbit known, reported units
-    bool proved = false;    ///< ... and proved to be the best
-    Eigen::VectorXd best_x; ///< its unknowns
-    double pose_seconds = 0;///< CPU, to pose the program and find a start: part of every run
-    Eigen::VectorXd warm_x; ///< on this level, from the best orbit of a level 2 % away
+    double best = 0;          ///< objective of the best orbit known, reported units
+    bool proved = false;      ///< ... and proved to be the best
+    Eigen::VectorXd best_x;   ///< its unknowns
+    double pose_seconds = 0;  ///< CPU, to pose the program and find a start: part of every run
+    Eigen::VectorXd warm_x;   ///< on this level, from the best orbit of a level 2 % away
 
 private:
     [[nodiscard]] double posing_seconds() const;
@@ -65,10 +65,10 @@ struct Trial {
     Outcome outcome = Outcome::not_finite;
     bool reported = false;  ///< the library claims success
     std::string status;
-    double gap = 0;         ///< |objective - best|/best
-    double violation = 0;   ///< worst of the replay, relative
-    bool certified = false; ///< the method's own bound proves its answer the best
-    double seconds = 0;     ///< CPU, with posing, polish, bound and replay
+    double gap = 0;          ///< |objective - best|/best
+    double violation = 0;    ///< worst of the replay, relative
+    bool certified = false;  ///< the method's own bound proves its answer the best
+    double seconds = 0;      ///< CPU, with posing, polish, bound and replay
     int iterations = 0;
 
     [[nodiscard]] double error() const { return gap > violation ? gap : violation; }

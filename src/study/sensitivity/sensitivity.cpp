@@ -45,8 +45,12 @@ class Sensitivity {
 public:
     Sensitivity(const Scene& scene, const SensitivityRequest& request, SensitivitySink& sink,
                 const std::function<bool()>& keep_going)
-        : scene_(scene), request_(request), sink_(sink), keep_going_(keep_going),
-          solver_(request.solver), gap_sign_(scene.bar.gap_sign()) {}
+        : scene_(scene),
+          request_(request),
+          sink_(sink),
+          keep_going_(keep_going),
+          solver_(request.solver),
+          gap_sign_(scene.bar.gap_sign()) {}
 
     SensitivitySummary run() {
         const std::vector<Pattern> patterns =
@@ -112,7 +116,8 @@ private:
         for (const auto& level : levels) {
             if (!keep_going_()) break;
             wanted.level = level;
-            wanted.objective = level || scene_.objective == Objective::max_energy ? scene_.objective : Objective::min_energy;
+            wanted.objective =
+                level || scene_.objective == Objective::max_energy ? scene_.objective : Objective::min_energy;
             wanted.reference = wanted.objective == Objective::nearest ? before : Eigen::VectorXd();
             const OrbitAnswer answer = solver_.solve(scene_.bar, problem, wanted);
             if (answer.verdict == Verdict::failed) ++summary_.failed;
@@ -203,8 +208,8 @@ private:
 
 }  // namespace
 
-SensitivitySummary sensitivity(const Scene& scene, const SensitivityRequest& request,
-                               SensitivitySink& sink, const std::function<bool()>& keep_going) {
+SensitivitySummary sensitivity(const Scene& scene, const SensitivityRequest& request, SensitivitySink& sink,
+                               const std::function<bool()>& keep_going) {
     return Sensitivity(scene, request, sink, keep_going).run();
 }
 

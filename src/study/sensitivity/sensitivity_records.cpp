@@ -64,15 +64,16 @@ double unit_of(Parameter parameter, const Bar& bar) {
     }
 }
 
-OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objective,
-                             std::optional<double> level, const Eigen::VectorXd& reference) {
+OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objective, std::optional<double> level,
+                             const Eigen::VectorXd& reference) {
     const RelaxedSet set = relaxed_set(orbit.kernel, gap_sign);
     const Objective asked = level || objective == Objective::max_energy ? objective : Objective::min_energy;
     std::vector<Eigen::VectorXd> ties;
     if (asked == Objective::max_energy) {
         const AdmissibleSet known = admissible_set(reduce(conditions(orbit.kernel, gap_sign)));
         for (const auto& vertex : known.vertices) {
-            if (known.energy(vertex) >= known.energy(known.vertices.front()) * (1 - tie_tolerance)) ties.push_back(known.reduction.beta(vertex));
+            if (known.energy(vertex) >= known.energy(known.vertices.front()) * (1 - tie_tolerance))
+                ties.push_back(known.reduction.beta(vertex));
         }
     }
     const OptimumSensitivity optimum(set, asked, level, orbit.beta, OptimumSensitivity::Options{}, reference, ties);
@@ -86,8 +87,8 @@ OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objecti
     record.refusal = optimum.refusal();
     record.kkt_residual = optimum.kkt_residual();
     record.euler_defect = optimum.euler_defect();
-    std::vector<Parameter> whole{Parameter::gap, Parameter::contact, Parameter::band,
-                                 Parameter::penetration, Parameter::adhesion};
+    std::vector<Parameter> whole{Parameter::gap, Parameter::contact, Parameter::band, Parameter::penetration,
+                                 Parameter::adhesion};
     if (level) whole.push_back(Parameter::energy);
     record.prices = prices_of(set, optimum, whole);
     const std::vector<int> active = optimum.active_rows();
@@ -119,8 +120,8 @@ IntervalRecord interval_record(const RelaxedSet& set) {
     record.pattern = set.kernel.pattern;
     if (interval.failed || interval.empty) return record;
     record.least = interval.least;
-    const std::vector<Parameter> parameters{Parameter::gap, Parameter::contact, Parameter::band,
-                                            Parameter::penetration, Parameter::adhesion};
+    const std::vector<Parameter> parameters{Parameter::gap, Parameter::contact, Parameter::band, Parameter::penetration,
+                                            Parameter::adhesion};
     if (set.gap_sign != 0) {
         const OptimumSensitivity least(set, Objective::min_energy, std::nullopt, interval.least_point);
         record.least_prices = prices_of(set, least, parameters);

@@ -8,8 +8,8 @@
 namespace nsma {
 namespace {
 
-constexpr std::array verdicts{Verdict::trivial, Verdict::inadmissible, Verdict::below,     Verdict::above,
-                              Verdict::undecided, Verdict::admissible, Verdict::failed};
+constexpr std::array verdicts{Verdict::trivial,   Verdict::inadmissible, Verdict::below, Verdict::above,
+                              Verdict::undecided, Verdict::admissible,   Verdict::failed};
 constexpr std::array agreements{Agreement::not_needed, Agreement::agree,       Agreement::different_optimum,
                                 Agreement::one_failed, Agreement::both_failed, Agreement::single};
 constexpr std::array objectives{Objective::least_shock, Objective::nearest, Objective::least_force,
@@ -121,7 +121,9 @@ class Names {
 public:
     std::vector<std::string> names;
     template <class Field>
-    void operator()(const char* name, const Field&) { names.emplace_back(name); }
+    void operator()(const char* name, const Field&) {
+        names.emplace_back(name);
+    }
     template <class Part, class Visit>
     void group(const std::optional<Part>&, Visit visit) {
         const Part none{};
@@ -150,10 +152,10 @@ public:
         }
     }
     template <class Enum>
-        requires std::is_enum_v<Enum>
+    requires std::is_enum_v<Enum>
     void operator()(const char*, Enum value) { put(std::string(name(value))); }
     template <class Enum>
-        requires std::is_enum_v<Enum>
+    requires std::is_enum_v<Enum>
     void operator()(const char* name, const std::optional<Enum>& value) {
         if (value) {
             (*this)(name, *value);
@@ -200,7 +202,7 @@ public:
         }
     }
     template <class Enum>
-        requires std::is_enum_v<Enum>
+    requires std::is_enum_v<Enum>
     void operator()(const char* what, Enum& value) {
         const auto word = get<std::string>(what);
         for (const Enum candidate : all_of(Enum{})) {
@@ -212,7 +214,7 @@ public:
         fail(what);
     }
     template <class Enum>
-        requires std::is_enum_v<Enum>
+    requires std::is_enum_v<Enum>
     void operator()(const char* name, std::optional<Enum>& value) {
         if (std::holds_alternative<std::monostate>(peek(name))) {
             ++next_;
@@ -230,8 +232,9 @@ public:
         if (absent) part.reset();
     }
     void end() const {
-        if (next_ != row_.size()) throw std::invalid_argument("row: expected " + std::to_string(next_) +
-                                                              " values, got " + std::to_string(row_.size()));
+        if (next_ != row_.size())
+            throw std::invalid_argument("row: expected " + std::to_string(next_) + " values, got " +
+                                        std::to_string(row_.size()));
     }
 
 private:
@@ -321,9 +324,9 @@ OrbitAnswer orbit_answer_of(const ResultRows& rows, const Bar& bar) {
         one.end();
     }
     if (!rows.beta.empty()) {
-        answer.orbit = make_orbit(bar, exact_kernel(answer.pattern),
-                                  Eigen::Map<const Eigen::VectorXd>(rows.beta.data(),
-                                                                    static_cast<Eigen::Index>(rows.beta.size())));
+        answer.orbit = make_orbit(
+            bar, exact_kernel(answer.pattern),
+            Eigen::Map<const Eigen::VectorXd>(rows.beta.data(), static_cast<Eigen::Index>(rows.beta.size())));
     }
     return answer;
 }

@@ -18,7 +18,9 @@ std::size_t at(long index) { return static_cast<std::size_t>(index); }
 }  // namespace
 
 SweepQueue::SweepQueue(const Scene& scene, const OrbitSolverOptions& options, Order order)
-    : options_(options), all_kinds_(scene.all_kinds), nearest_(scene.objective == Objective::nearest),
+    : options_(options),
+      all_kinds_(scene.all_kinds),
+      nearest_(scene.objective == Objective::nearest),
       first_place_(is_extreme(scene.objective) || scene.bar.gap_sign() == 0 ? 1 : 0),
       last_place_(is_extreme(scene.objective) ? 1 : static_cast<int>(scene.levels.size())) {
     const auto patterns = patterns_of(scene);
@@ -101,8 +103,8 @@ void SweepQueue::decided(const WorkResult& result) {
         open.strand_length = warm_strand;
     }
     open.available = strands(open);
-    open.workers = static_cast<int>(
-        std::count_if(seats_.begin(), seats_.end(), [&](const auto& seat) { return seat.second.pattern == result.pattern; }));
+    open.workers = static_cast<int>(std::count_if(
+        seats_.begin(), seats_.end(), [&](const auto& seat) { return seat.second.pattern == result.pattern; }));
     if (open.workers == 0) unheld_.insert(result.pattern);
 }
 

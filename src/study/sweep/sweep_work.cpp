@@ -91,7 +91,8 @@ WorkResult SweepWorker::run(const WorkUnit& unit) {
     if (unit.place > 0 && !is_extreme(scene_.objective)) {
         request.level = scene_.levels.at(static_cast<std::size_t>(unit.place) - 1);
         if (!unit.before.empty()) {
-            request.start = Eigen::Map<const Eigen::VectorXd>(unit.before.data(), static_cast<Eigen::Index>(unit.before.size()));
+            request.start =
+                Eigen::Map<const Eigen::VectorXd>(unit.before.data(), static_cast<Eigen::Index>(unit.before.size()));
             if (scene_.objective == Objective::nearest) {
                 request.reference = reference_window(make_orbit(scene_.bar, problem_.kernel, request.start));
             }

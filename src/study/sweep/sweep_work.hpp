@@ -14,7 +14,8 @@ struct WorkUnit {
     long pattern = 0;  ///< position among patterns_of(scene)
     /// -1: decide the pattern; 0: its least-energy orbit; k >= 1: the k-th answer asked of it.
     int place = -1;
-    /// Beta of the orbit at a level before (nondimensional), which Ipopt starts from and `nearest` stays near; may be empty.
+    /// Beta of the orbit at a level before (nondimensional), which Ipopt starts from and `nearest` stays near; may be
+    /// empty.
     std::vector<double> before;
 };
 
@@ -32,8 +33,8 @@ class SweepWorker {
 public:
     SweepWorker(const Scene& scene, const OrbitSolverOptions& options);
     [[nodiscard]] WorkResult run(const WorkUnit& unit);
-    /// Several in their order. A verdict brings with it the answers for levels outside the pattern's interval, which are
-    /// known with it: up to 1024 in all.
+    /// Several in their order. A verdict brings with it the answers for levels outside the pattern's interval, which
+    /// are known with it: up to 1024 in all.
     [[nodiscard]] std::vector<WorkResult> run(const std::vector<WorkUnit>& units);
 
 private:

@@ -71,7 +71,9 @@ public:
     }
 
 private:
-    [[noreturn]] static void fail() { throw std::invalid_argument("message: expected a packed record, got other bytes"); }
+    [[noreturn]] static void fail() {
+        throw std::invalid_argument("message: expected a packed record, got other bytes");
+    }
     std::string_view take(std::size_t size) {
         if (size > left_.size()) fail();
         const auto part = left_.substr(0, size);

@@ -51,10 +51,10 @@ struct OptimumRecord {
     double value = 0;                              ///< nondimensional objective
     bool global = false;                           ///< proved to be the best orbit
     bool nondegenerate = false;
-    int tied = 1;                                  ///< optima of this value that symmetries give, this one included; 0: too many
-    std::string refusal;                           ///< nothing can be said: why
-    std::optional<double> kkt_residual;             ///< relative; absent without multipliers
-    std::optional<double> euler_defect;            ///< relative
+    int tied = 1;                        ///< optima of this value that symmetries give, this one included; 0: too many
+    std::string refusal;                 ///< nothing can be said: why
+    std::optional<double> kkt_residual;  ///< relative; absent without multipliers
+    std::optional<double> euler_defect;  ///< relative
     std::vector<Price> prices;
     std::vector<OrbitDerivative> derivatives;
 };
@@ -71,19 +71,19 @@ struct IntervalRecord {
     std::optional<int> mode;
     std::optional<double> frequency_by_energy;  ///< E/omega domega/dE, exact
     std::optional<double> frequency_by_energy_difference;
-    std::optional<double> frequency_by_gap;     ///< d/omega domega/dd at fixed energy, exact
+    std::optional<double> frequency_by_gap;  ///< d/omega domega/dd at fixed energy, exact
     std::optional<double> frequency_by_gap_difference;
 };
 
 /// One point of a relaxation curve of one pattern; amounts in u and Y S u/L.
 struct CurveRecord {
     Pattern pattern;
-    std::string relaxed;              ///< "penetration", "band+adhesion", ...
+    std::string relaxed;  ///< "penetration", "band+adhesion", ...
     double amount = 0;
     bool failed = false;
     bool admissible = false;
-    std::optional<double> least;      ///< E_min
-    std::optional<double> greatest;   ///< E_max; absent: unbounded or not admissible
+    std::optional<double> least;     ///< E_min
+    std::optional<double> greatest;  ///< E_max; absent: unbounded or not admissible
     bool unbounded = false;
     std::optional<double> level;      ///< of the objective
     std::optional<double> objective;  ///< best found at the level
@@ -117,12 +117,12 @@ struct SensitivityRequest {
 
 struct SensitivitySummary {
     int patterns = 0, admissible = 0, optima = 0;
-    int left = 0;                   ///< admissible, but no contact motion: only its ablation
+    int left = 0;  ///< admissible, but no contact motion: only its ablation
     int nondegenerate = 0, tied = 0, refused = 0;
-    int failed = 0;                 ///< admissible by verdict, yet no orbit was found
-    double worst_euler = 0;         ///< relative
+    int failed = 0;          ///< admissible by verdict, yet no orbit was found
+    double worst_euler = 0;  ///< relative
     double worst_kkt = 0;
-    double worst_frequency = 0;     ///< exact against stored neighbours, relative
+    double worst_frequency = 0;  ///< exact against stored neighbours, relative
     bool interrupted = false;
 };
 
@@ -130,13 +130,11 @@ struct SensitivitySummary {
 /// curves (each condition alone and in pairs) and the ablation funnel. Relaxation curves are
 /// left out for a closed gap, where no length tells how much is much.
 [[nodiscard]] SensitivitySummary sensitivity(const Scene& scene, const SensitivityRequest& request,
-                                             SensitivitySink& sink,
-                                             const std::function<bool()>& keep_going);
+                                             SensitivitySink& sink, const std::function<bool()>& keep_going);
 
 /// All derivatives of one optimum; `level` absent: of its energy (objective min_energy).
 [[nodiscard]] OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objective,
-                                           std::optional<double> level,
-                                           const Eigen::VectorXd& reference = {});
+                                           std::optional<double> level, const Eigen::VectorXd& reference = {});
 
 [[nodiscard]] AblationRecord ablation_record(const Kernel& kernel, int gap_sign);
 
