@@ -4,30 +4,17 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 
+#include "decompositions.hpp"
 #include "program.hpp"
 
 namespace nsma {
-
-inline constexpr double rank_tolerance = 1e-11;  // rows are scaled to order one
 
 enum class Kind { inequality, lower, upper };
 struct Row {
     Kind kind;
     Eigen::Index index;
 };
-
-/// Orthonormal basis of the space orthogonal to the rows of `matrix`.
-inline Eigen::MatrixXd null_space(const Eigen::MatrixXd& matrix, Eigen::Index n) {
-    if (matrix.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
-    qr.setThreshold(rank_tolerance);
-    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(n, n - qr.rank());
-    basis.bottomRows(basis.cols()).setIdentity();
-    basis.applyOnTheLeft(qr.householderQ().setLength(qr.rank()));
-    return basis;
-}
 
 /// The feasible set as rows a.x <= b, equalities apart, and the moves along its boundary.
 class Boundary {
@@ -87,9 +74,7 @@ public:
         }
         const Flat flat = flat_of(rows);
         if (flat.system.rows() == 0 || flat.system.cols() == 0) return x;
-        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-        decomposition.setThreshold(rank_tolerance);
-        decomposition.compute(flat.system);
+        const MinimumNorm least(flat.system);
         for (int pass = 0; pass < 2; ++pass) {
             Eigen::VectorXd defect(flat.system.rows());
             defect.head(equalities_.rows()) = program_.equality_values - equalities_ * x;
@@ -97,7 +82,7 @@ public:
             for (const auto& row : rows) {
                 if (row.kind == Kind::inequality) defect[next++] = slack(row, x);
             }
-            x(flat.free) += decomposition.solve(defect);
+            x(flat.free) += least.solve(defect);
         }
         return x;
     }

@@ -3,22 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <Eigen/QR>
+#include "decompositions.hpp"
 
 namespace nsma {
-namespace {
-
-Eigen::VectorXd solve_on(const Eigen::MatrixXd& matrix, const std::vector<int>& support,
-                         const Eigen::VectorXd& target) {
-    const Eigen::MatrixXd part = matrix(Eigen::all, support);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(part);
-    Eigen::VectorXd y = qr.solve(target);
-    y += qr.solve(target - part * y);  // one refinement: the residual is what callers use
-    return y;
-}
-
-}  // namespace
-
 NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& target,
                                               double tolerance) {
     if (matrix.rows() != target.size()) {
@@ -58,7 +45,7 @@ NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& matrix, con
         passive[static_cast<std::size_t>(entering)] = 1;
         support.insert(std::lower_bound(support.begin(), support.end(), static_cast<int>(entering)),
                        static_cast<int>(entering));
-        Eigen::VectorXd trial = solve_on(matrix, support, target);
+        Eigen::VectorXd trial = least_squares(matrix(Eigen::all, support), target);
         const auto position = static_cast<Eigen::Index>(
             std::lower_bound(support.begin(), support.end(), static_cast<int>(entering)) - support.begin());
         if (!trial.allFinite() || trial[position] <= 0) {
@@ -91,7 +78,7 @@ NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& matrix, con
             }
             support = std::move(remaining);
             if (support.empty()) break;
-            trial = solve_on(matrix, support, target);
+            trial = least_squares(matrix(Eigen::all, support), target);
         }
         solution.y.setZero();
         for (std::size_t i = 0; i < support.size(); ++i) {

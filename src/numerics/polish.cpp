@@ -5,9 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-
 #include "boundary.hpp"
 #include "least_squares.hpp"
 
@@ -34,14 +31,12 @@ struct FirstOrder {
 // end of a descent, for which adding columns one by one would take their number of decompositions.
 std::optional<NonnegativeSolution> all_supporting(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
     if (matrix.cols() == 0 || matrix.cols() > matrix.rows()) return std::nullopt;
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix);
     NonnegativeSolution solution;
-    solution.y = qr.solve(target);
-    if (!solution.y.allFinite() || solution.y.minCoeff() <= 0) return std::nullopt;
-    solution.y += qr.solve(target - matrix * solution.y);
+    solution.y = least_squares(matrix, target);
     solution.residual = target - matrix * solution.y;
     const double orthogonal = support_rounding * target.norm();  // dependent columns leave more
-    if (solution.y.minCoeff() <= 0 || (matrix.transpose() * solution.residual).cwiseAbs().maxCoeff() > orthogonal)
+    if (!solution.y.allFinite() || solution.y.minCoeff() <= 0 ||
+        (matrix.transpose() * solution.residual).cwiseAbs().maxCoeff() > orthogonal)
         return std::nullopt;
     for (int k = 0; k < matrix.cols(); ++k) solution.support.push_back(k);
     solution.converged = true;
@@ -82,7 +77,7 @@ FirstOrder first_order(const Program& program, const Boundary& boundary, const s
     Eigen::VectorXd balance = gradient + normals.transpose() * solution.y;
     multipliers.equality = Eigen::VectorXd::Zero(equality_count);
     if (smooth.rows() > 0) {
-        const Eigen::VectorXd smooth_multipliers = smooth.transpose().completeOrthogonalDecomposition().solve(-balance);
+        const Eigen::VectorXd smooth_multipliers = MinimumNorm(smooth.transpose()).solve(-balance);
         multipliers.equality = smooth_multipliers.head(equality_count);
         if (sphere) multipliers.sphere = smooth_multipliers[equality_count];
         balance += smooth.transpose() * smooth_multipliers;
@@ -127,12 +122,8 @@ Eigen::VectorXd newton_direction(const Program& program, const Boundary& boundar
                                  const Eigen::VectorXd& x, double sphere_multiplier, const Eigen::VectorXd& descent) {
     const auto [span, reduced] = tangent_of(program, boundary, basis, x, sphere_multiplier);
     if (span.cols() == 0) return Eigen::VectorXd::Zero(x.size());  // a point: nothing to reduce over
-    const Eigen::LDLT<Eigen::MatrixXd> factor(reduced);
     const Eigen::VectorXd gradient = span.transpose() * program.objective_gradient(x);
-    const double scale = std::max(reduced.cwiseAbs().maxCoeff(), 1e-300);
-    if (factor.info() == Eigen::Success && (factor.vectorD().array() > 1e-12 * scale).all()) {
-        return span * factor.solve(-gradient);
-    }
+    if (const auto step = solve_definite(reduced, -gradient)) return span * *step;
     const Eigen::VectorXd along = span * (span.transpose() * descent);
     const double curvature =
         along.norm() > 0 ? along.dot(program.hessian * along + 2.0 * sphere_multiplier * boundary.on_sphere(along))
@@ -149,10 +140,9 @@ Eigen::VectorXd escape_direction(const Program& program, const Boundary& boundar
     const Eigen::MatrixXd basis = boundary.directions(active);
     const auto [span, hessian] = tangent_of(program, boundary, basis, x, sphere_multiplier);
     if (span.cols() == 0) return {};
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(hessian);
-    const double scale = spectrum.eigenvalues().cwiseAbs().maxCoeff();
-    if (spectrum.eigenvalues()[0] >= -curvature_rounding * scale) return {};
-    return span * spectrum.eigenvectors().col(0);
+    const auto [curvatures, modes] = spectrum(hessian);
+    if (curvatures[0] >= -curvature_rounding * curvatures.cwiseAbs().maxCoeff()) return {};
+    return span * modes.col(0);
 }
 
 // Leaves a stationary point that is no minimum along its active rows; false at a minimum.
@@ -204,26 +194,25 @@ double dual_bound(const Program& program, const Boundary& boundary, const Eigen:
         // Not every unknown lies on the sphere: only a convex Lagrangian gives a bound.
         Eigen::MatrixXd hessian = Eigen::MatrixXd(program.hessian);
         hessian.diagonal().head(program.sphere_variables).array() += 2.0 * multipliers.sphere;
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(basis.transpose() * hessian * basis);
-        const double scale = 1.0 + spectrum.eigenvalues().cwiseAbs().maxCoeff();
-        return spectrum.eigenvalues()[0] >= -1e-12 * scale ? objective - slip : -no_bound;
+        const Eigen::VectorXd curvatures = eigenvalues(basis.transpose() * hessian * basis);
+        return curvatures[0] >= -1e-12 * (1.0 + curvatures.cwiseAbs().maxCoeff()) ? objective - slip : -no_bound;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(basis.transpose() * (program.hessian * basis));
-    const Eigen::VectorXd eigenvalues = spectrum.eigenvalues().array() + 2.0 * multipliers.sphere;
-    if (eigenvalues[0] >= 0) return objective - slip;
-    const Eigen::VectorXd c = spectrum.eigenvectors().transpose() * (basis.transpose() * boundary.on_sphere(x));
+    const auto [curvatures, modes] = spectrum(basis.transpose() * (program.hessian * basis));
+    const Eigen::VectorXd shifted = curvatures.array() + 2.0 * multipliers.sphere;
+    if (shifted[0] >= 0) return objective - slip;
+    const Eigen::VectorXd c = modes.transpose() * (basis.transpose() * boundary.on_sphere(x));
     // inf over the flat of L with multiplier mu + s is objective - 2 s^2 sum c_i^2/(l_i + 2 s),
     // concave in s > -l_min/2: golden section on a logarithmic scale of s + l_min/2.
     const auto bound = [&](double excess) {
-        const double s = -0.5 * eigenvalues[0] + excess;
+        const double s = -0.5 * shifted[0] + excess;
         double sum = 0;
         for (Eigen::Index i = 0; i < c.size(); ++i) {
-            sum += c[i] * c[i] / std::max(eigenvalues[i] + 2.0 * s, 1e-300);
+            sum += c[i] * c[i] / std::max(shifted[i] + 2.0 * s, 1e-300);
         }
         return objective - 2.0 * s * s * sum;
     };
     double best = -no_bound;
-    const double scale = eigenvalues.cwiseAbs().maxCoeff();
+    const double scale = shifted.cwiseAbs().maxCoeff();
     for (int i = -120; i <= 20; ++i) best = std::max(best, bound(scale * std::pow(10.0, 0.1 * i)));
     return best - slip;
 }

@@ -4,9 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
-
+#include "numerics/decompositions.hpp"
 #include "numerics/least_squares.hpp"
 #include "numerics/linear_program.hpp"
 
@@ -16,15 +14,6 @@ namespace {
 // CLP works to 1e-9; what it answers is solved again on its support and judged by its dual.
 constexpr double certificate_tolerance = 1e-9;
 
-// Rank decisions as the singular values are judged: what is not clearly independent is dependent.
-Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposed(const Eigen::MatrixXd& matrix,
-                                                                   const MagnitudeBounds& magnitude) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(magnitude.positive);
-    decomposition.compute(matrix);
-    return decomposition;
-}
-
 double smallest(const Eigen::VectorXd& values) { return values.size() > 0 ? values.minCoeff() : 0.0; }
 
 }  // namespace
@@ -33,14 +22,14 @@ Eigen::MatrixXd orthogonal_space(const Eigen::MatrixXd& rows, Eigen::Index n, co
                                  bool& rank_clear) {
     rank_clear = true;
     if (rows.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
+    const Singular right = right_singular(rows);
     Eigen::Index rank = 0;
-    for (const double singular : svd.singularValues()) {
+    for (const double singular : right.values) {
         const Magnitude size = magnitude(singular);
         if (size == Magnitude::unclear) rank_clear = false;
         if (size != Magnitude::zero) ++rank;
     }
-    return svd.matrixV().rightCols(n - rank);
+    return right.vectors.rightCols(n - rank);
 }
 
 MultiplierSet::MultiplierSet(Eigen::MatrixXd normals, Eigen::MatrixXd smooth, Eigen::VectorXd gradient,
@@ -75,30 +64,28 @@ MultiplierSet::MultiplierSet(Eigen::MatrixXd normals, Eigen::MatrixXd smooth, Ei
         status_ = count == 0 ? Status::one : Status::many;
         return;
     }
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(columns, Eigen::ComputeThinU);
+    const Singular left = left_singular(columns);
     Eigen::Index rank = 0;
-    for (const double singular : svd.singularValues()) {
+    for (const double singular : left.values) {
         const Magnitude size = magnitude_(singular);
         if (size == Magnitude::unclear) return;
         if (size == Magnitude::positive) ++rank;
     }
-    system_ = svd.matrixU().leftCols(rank).transpose() * columns;
+    system_ = left.vectors.leftCols(rank).transpose() * columns;
     target_ = system_ * y_;  // attained by construction, and equal to the wanted one to rounding
     if (rank < count) {
         status_ = Status::many;
         return;
     }
     // Independent normals: rounding may have left a multiplier of zero out, or below zero.
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-    y_ = qr.solve(wanted);
-    y_ += qr.solve(wanted - columns * y_);
+    y_ = least_squares(columns, wanted);
     status_ = smallest(y_) >= -magnitude_.zero * scale_ ? Status::one : Status::unclear;
 }
 
 Eigen::VectorXd MultiplierSet::smooth() const {
     if (smooth_.rows() == 0) return {};
     const Eigen::VectorXd balance = gradient_ + normals_.transpose() * y_;
-    return decomposed(smooth_.transpose(), magnitude_).solve(-balance);
+    return MinimumNorm(smooth_.transpose(), magnitude_.positive).solve(-balance);
 }
 
 double MultiplierSet::residual() const {
@@ -134,11 +121,7 @@ MultiplierSet::Greatest MultiplierSet::least_over_set(const Eigen::VectorXd& cos
     }
     Eigen::VectorXd y = Eigen::VectorXd::Zero(count);
     if (!support.empty()) {
-        const Eigen::MatrixXd part = system_(Eigen::all, support);
-        const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(part);
-        Eigen::VectorXd on_support = qr.solve(target_);
-        on_support += qr.solve(target_ - part * on_support);
-        y(support) = on_support;
+        y(support) = least_squares(system_(Eigen::all, support), target_);
     }
     const Eigen::VectorXd& z = solution.row_dual;
     const double size = 1.0 + cost.norm();
@@ -154,11 +137,7 @@ MultiplierSet::Greatest MultiplierSet::greatest(const Eigen::VectorXd& a, const 
     if (status_ != Status::one && status_ != Status::many) return {};
     // w = -pinv(smooth')(gradient + normals' y), so w . b = -(gradient + normals' y) . step.
     Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient_.size());
-    if (smooth_.rows() > 0) {
-        const auto decomposition = decomposed(smooth_, magnitude_);
-        step = decomposition.solve(b);
-        step += decomposition.solve(b - smooth_ * step);
-    }
+    if (smooth_.rows() > 0) step = MinimumNorm(smooth_, magnitude_.positive).refined(b);
     Greatest result = least_over_set(a - normals_ * step);
     result.value = gradient_.dot(step) - result.value;
     return result;

@@ -5,10 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-
 #include "relaxed_solver.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/polish.hpp"
 
 namespace nsma {
@@ -196,20 +194,19 @@ void OptimumAnalysis::newton_step() {
     defect.head(contact) = form.program.equality_values - equalities_ * x;
     defect.segment(contact, normals_.rows()) = form.program.inequality_values(active) - normals_ * x;
     defect[defect.size() - 1] = -0.5 * form.program.sphere_residual(x);
-    const Eigen::VectorXd cleaned = x + rows.completeOrthogonalDecomposition().solve(defect);
+    const Eigen::VectorXd cleaned = x + MinimumNorm(rows).solve(defect);
     if (form.program.violation(cleaned) <= magnitude_.zero) set_point(cleaned);
     std::vector<Eigen::Index> all(active.size());
     std::iota(all.begin(), all.end(), Eigen::Index{0});
     const Eigen::MatrixXd flat = held_flat(all, true);
     if (flat.cols() == 0) return;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(flat.transpose() * lagrangian() * flat);
-    const Eigen::VectorXd slope = spectrum.eigenvectors().transpose() * (flat.transpose() * gradient_);
+    const auto [curvatures, modes] = spectrum(flat.transpose() * lagrangian() * flat);
+    const Eigen::VectorXd slope = modes.transpose() * (flat.transpose() * gradient_);
     Eigen::VectorXd step = Eigen::VectorXd::Zero(slope.size());
     for (Eigen::Index i = 0; i < slope.size(); ++i) {
-        const double curvature = spectrum.eigenvalues()[i];
-        if (curvature > magnitude_.positive * gradient_scale_) step[i] = -slope[i] / curvature;
+        if (curvatures[i] > magnitude_.positive * gradient_scale_) step[i] = -slope[i] / curvatures[i];
     }
-    const Eigen::VectorXd moved = x + flat * (spectrum.eigenvectors() * step);
+    const Eigen::VectorXd moved = x + flat * (modes * step);
     if (form.program.violation(moved) > magnitude_.zero) return;
     set_point(moved);
 }
@@ -238,9 +235,7 @@ bool OptimumAnalysis::second_order(const std::vector<Eigen::Index>& held) {
     const Eigen::MatrixXd across = held_flat(held, false);
     if (magnitude_((across.transpose() * sphere_).norm()) != Magnitude::positive) return false;
     const auto least_curvature = [this](const Eigen::MatrixXd& basis) {
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(basis.transpose() * lagrangian() * basis,
-                                                                      Eigen::EigenvaluesOnly);
-        return spectrum.eigenvalues()[0] / gradient_scale_;
+        return eigenvalues(basis.transpose() * lagrangian() * basis)[0] / gradient_scale_;
     };
     isolated = magnitude_(least_curvature(flat)) == Magnitude::positive;
     // A Lagrangian convex along COND2 bounds the shifted values from below, whatever the flat.

@@ -1,7 +1,5 @@
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-
 #include "optimum_analysis.hpp"
+#include "numerics/decompositions.hpp"
 
 namespace nsma {
 
@@ -28,11 +26,7 @@ OrbitSlope OptimumAnalysis::orbit_slope(const Shift& direction) const {
     }
     Eigen::VectorXd step = Eigen::VectorXd::Zero(x.size());
     if (count > 0) {
-        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-        decomposition.setThreshold(magnitude_.positive);
-        decomposition.compute(rows);
-        step = decomposition.solve(target);
-        step += decomposition.solve(target - rows * step);
+        step = MinimumNorm(rows, magnitude_.positive).refined(target);
         if ((rows * step - target).norm() > magnitude_.zero * (1.0 + target.norm())) {
             return refuse("the active rows part: they are dependent and relaxed apart");
         }
@@ -41,7 +35,9 @@ OrbitSlope OptimumAnalysis::orbit_slope(const Shift& direction) const {
     const Eigen::MatrixXd flat = orthogonal_space(rows, x.size(), magnitude_, clear);
     if (flat.cols() > 0) {
         const Eigen::MatrixXd hessian = lagrangian();
-        step -= flat * (flat.transpose() * hessian * flat).ldlt().solve(flat.transpose() * (hessian * step));
+        const auto back = solve_definite(flat.transpose() * hessian * flat, flat.transpose() * (hessian * step));
+        if (!back) return refuse("the optimum is not isolated");
+        step -= flat * *back;
     }
     return {form.scale * step.head(form.orbit_variables), {}};
 }

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/QR>
-
+#include "numerics/decompositions.hpp"
 #include "numerics/linear_program.hpp"
 #include "nsma/set/admissible_set.hpp"
 #include "search/orbit_program.hpp"
@@ -79,11 +78,7 @@ Eigen::VectorXd onto_rows(const Program& program, Eigen::VectorXd x, double tole
         target[at] = program.inequality_values[active[k]];
     }
     if (system.rows() == 0) return x;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(1e-11);
-    decomposition.compute(system);
-    for (int pass = 0; pass < 2; ++pass) x += decomposition.solve(target - system * x);
-    return x;
+    return x + MinimumNorm(system).refined(target - system * x);
 }
 
 // The same with the widest tolerance whose rows do meet in a point of the set: rows a small

@@ -5,12 +5,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
-
 #include "wave/dense_wfem.hpp"
 #include "nsma/orbit/kernel.hpp"
+#include "numerics/decompositions.hpp"
 
 namespace nsma {
 namespace {
@@ -50,11 +47,15 @@ MatrixXd cycles_basis(const Pattern& pattern) {
     return basis;
 }
 
-Eigen::VectorXd pivots(const Eigen::ColPivHouseholderQR<MatrixXd>& qr) { return qr.matrixR().diagonal().cwiseAbs(); }
-
 Eigen::Index count_zero(const Eigen::VectorXd& values, double tolerance) {
     const double threshold = tolerance * std::max(1.0, values.size() > 0 ? values.maxCoeff() : 1.0);
     return (values.array() <= threshold).count();
+}
+
+std::optional<SingularMethod> svd_of(KernelMethod method) {
+    if (method == KernelMethod::dense_svd) return SingularMethod::jacobi;
+    if (method == KernelMethod::divided_svd) return SingularMethod::divide_and_conquer;
+    return std::nullopt;
 }
 
 MatrixXd powers_basis(const MatrixXd& matrix, double tolerance) {
@@ -67,9 +68,7 @@ MatrixXd powers_basis(const MatrixXd& matrix, double tolerance) {
         if (change <= tolerance) break;
     }
     const auto rank = static_cast<Eigen::Index>(std::lround(projector.trace()));
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(projector);
-    const MatrixXd q = qr.householderQ() * MatrixXd::Identity(n, n);
-    return q.leftCols(std::clamp<Eigen::Index>(rank, 0, n));
+    return pivoted_qr(projector).q.leftCols(std::clamp<Eigen::Index>(rank, 0, n));
 }
 
 }  // namespace
@@ -95,28 +94,21 @@ MatrixXd kernel_space(KernelMethod method, const Bar& bar, const Pattern& patter
     const MatrixXd matrix = periodicity(bar, pattern);
     const auto n = matrix.rows();
     if (method == KernelMethod::matrix_powers) return powers_basis(matrix, tolerance);
-    if (method == KernelMethod::dense_svd) {
-        const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeFullV);
-        return svd.matrixV().rightCols(count_zero(svd.singularValues(), tolerance));
+    if (const auto svd = svd_of(method)) {
+        const Singular right = right_singular(matrix, *svd);
+        return right.vectors.rightCols(count_zero(right.values, tolerance));
     }
-    if (method == KernelMethod::divided_svd) {
-        const Eigen::BDCSVD<MatrixXd> svd(matrix, Eigen::ComputeFullV);
-        return svd.matrixV().rightCols(count_zero(svd.singularValues(), tolerance));
-    }
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(matrix.transpose());
-    const MatrixXd q = qr.householderQ() * MatrixXd::Identity(n, n);
-    return q.rightCols(count_zero(pivots(qr), tolerance));
+    const PivotedQr qr = pivoted_qr(matrix.transpose());
+    return qr.q.rightCols(count_zero(qr.pivots, tolerance));
 }
 
 Eigen::VectorXi dimensions_found(KernelMethod method, const Bar& bar, const Pattern& pattern,
                                  const Eigen::VectorXd& tolerances) {
     Eigen::VectorXd values;
-    if (method == KernelMethod::dense_svd) {
-        values = Eigen::JacobiSVD<MatrixXd>(periodicity(bar, pattern)).singularValues();
-    } else if (method == KernelMethod::divided_svd) {
-        values = Eigen::BDCSVD<MatrixXd>(periodicity(bar, pattern)).singularValues();
+    if (const auto svd = svd_of(method)) {
+        values = right_singular(periodicity(bar, pattern), *svd).values;
     } else if (method == KernelMethod::rank_revealing_qr) {
-        values = pivots(Eigen::ColPivHouseholderQR<MatrixXd>(periodicity(bar, pattern).transpose()));
+        values = pivoted_qr(periodicity(bar, pattern).transpose()).pivots;
     } else {
         throw std::invalid_argument("method: expected an SVD or rank-revealing QR, got " + std::string(name(method)));
     }
@@ -135,8 +127,7 @@ double space_distance(const MatrixXd& a, const MatrixXd& b) {
     if (a.cols() != b.cols()) return 1.0;
     if (a.cols() == 0) return 0.0;
     const MatrixXd rest = b - a * (a.transpose() * b);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> squares(rest.transpose() * rest, Eigen::EigenvaluesOnly);
-    return std::min(1.0, std::sqrt(std::max(squares.eigenvalues().maxCoeff(), 0.0)));
+    return std::min(1.0, std::sqrt(std::max(eigenvalues(rest.transpose() * rest).maxCoeff(), 0.0)));
 }
 
 }  // namespace nsma
