@@ -1,9 +1,6 @@
 #include "decompositions.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 namespace nsma {
 
@@ -47,36 +44,6 @@ VectorXd MinimumNorm::solve(const VectorXd& target) const { return implementatio
 VectorXd MinimumNorm::refined(const VectorXd& target) const {
     const VectorXd first = solve(target);
     return first + solve(target - implementation_->matrix * first);
-}
-
-std::optional<VectorXd> solve_definite(const MatrixXd& matrix, const VectorXd& target) {
-    const Eigen::LDLT<MatrixXd> factor(matrix);
-    const double least = 1e-12 * matrix.cwiseAbs().maxCoeff();
-    if (factor.info() != Eigen::Success || !(factor.vectorD().array() > least).all()) return std::nullopt;
-    return factor.solve(target);
-}
-
-Spectrum spectrum(const MatrixXd& symmetric) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
-    return {solver.eigenvalues(), solver.eigenvectors()};
-}
-
-VectorXd eigenvalues(const MatrixXd& symmetric) {
-    return Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-Singular right_singular(const MatrixXd& matrix, SingularMethod method) {
-    if (method == SingularMethod::divide_and_conquer) {
-        const Eigen::BDCSVD<MatrixXd> svd(matrix, Eigen::ComputeFullV);
-        return {svd.singularValues(), svd.matrixV()};
-    }
-    const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeFullV);
-    return {svd.singularValues(), svd.matrixV()};
-}
-
-Singular left_singular(const MatrixXd& matrix) {
-    const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeThinU);
-    return {svd.singularValues(), svd.matrixU()};
 }
 
 PivotedQr pivoted_qr(const MatrixXd& matrix) {

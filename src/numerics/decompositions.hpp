@@ -45,12 +45,11 @@ struct Spectrum {
 [[nodiscard]] Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric);
 
 /// Singular values, decreasing, with singular vectors as columns: all right ones, or the left ones of the values.
-enum class SingularMethod { jacobi, divide_and_conquer };
 struct Singular {
     Eigen::VectorXd values;
     Eigen::MatrixXd vectors;
 };
-[[nodiscard]] Singular right_singular(const Eigen::MatrixXd& matrix, SingularMethod method = SingularMethod::jacobi);
+[[nodiscard]] Singular right_singular(const Eigen::MatrixXd& matrix);
 [[nodiscard]] Singular left_singular(const Eigen::MatrixXd& matrix);
 
 /// Column-pivoted QR: |pivots|, decreasing, and the square orthogonal factor.

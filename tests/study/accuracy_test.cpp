@@ -76,8 +76,6 @@ TEST(Accuracy, QuickRunEndToEnd) {
     EXPECT_EQ(methods, (std::set<std::string>{"both solvers", "default", "segment", "Ipopt", "SLSQP", "AUGLAG+LBFGS",
                                               "AUGLAG+SLSQP", "COBYLA", "ISRES"}));
     for (const auto& record : seen.kernels) {
-        // Divide and conquer loses vectors of repeated singular values in some versions of Eigen.
-        if (record.method == "dense SVD, divide and conquer") continue;
         EXPECT_EQ(record.dimension, record.expected) << record.method;
         EXPECT_LE(record.error, 1e-12) << record.method;  // rounding at N = 20
     }

@@ -14,7 +14,7 @@ using nsma::Pattern;
 
 constexpr KernelMethod methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd,
                                     KernelMethod::rank_revealing_qr,
-                                    KernelMethod::matrix_powers};  // divided_svd can err
+                                    KernelMethod::matrix_powers};
 
 const nsma::Bar steel{1.0, 210e9, 7850.0, 1e-4, 1e-4};
 

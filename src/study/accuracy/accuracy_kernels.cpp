@@ -7,7 +7,7 @@
 namespace nsma {
 namespace {
 
-constexpr KernelMethod methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd, KernelMethod::divided_svd,
+constexpr KernelMethod methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd,
                                     KernelMethod::rank_revealing_qr, KernelMethod::matrix_powers};
 constexpr double slow_run = 0.5;  // seconds; one run of such work is enough
 

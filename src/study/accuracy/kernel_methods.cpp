@@ -52,12 +52,6 @@ Eigen::Index count_zero(const Eigen::VectorXd& values, double tolerance) {
     return (values.array() <= threshold).count();
 }
 
-std::optional<SingularMethod> svd_of(KernelMethod method) {
-    if (method == KernelMethod::dense_svd) return SingularMethod::jacobi;
-    if (method == KernelMethod::divided_svd) return SingularMethod::divide_and_conquer;
-    return std::nullopt;
-}
-
 MatrixXd powers_basis(const MatrixXd& matrix, double tolerance) {
     const auto n = matrix.rows();
     MatrixXd projector = MatrixXd::Identity(n, n) + 0.5 * matrix;
@@ -77,7 +71,6 @@ std::string_view name(KernelMethod method) {
     switch (method) {
         case KernelMethod::exact_cycles: return "exact cycles";
         case KernelMethod::dense_svd: return "dense SVD";
-        case KernelMethod::divided_svd: return "dense SVD, divide and conquer";
         case KernelMethod::rank_revealing_qr: return "rank-revealing QR";
         case KernelMethod::matrix_powers: return "matrix powers";
     }
@@ -94,8 +87,8 @@ MatrixXd kernel_space(KernelMethod method, const Bar& bar, const Pattern& patter
     const MatrixXd matrix = periodicity(bar, pattern);
     const auto n = matrix.rows();
     if (method == KernelMethod::matrix_powers) return powers_basis(matrix, tolerance);
-    if (const auto svd = svd_of(method)) {
-        const Singular right = right_singular(matrix, *svd);
+    if (method == KernelMethod::dense_svd) {
+        const Singular right = right_singular(matrix);
         return right.vectors.rightCols(count_zero(right.values, tolerance));
     }
     const PivotedQr qr = pivoted_qr(matrix.transpose());
@@ -105,8 +98,8 @@ MatrixXd kernel_space(KernelMethod method, const Bar& bar, const Pattern& patter
 Eigen::VectorXi dimensions_found(KernelMethod method, const Bar& bar, const Pattern& pattern,
                                  const Eigen::VectorXd& tolerances) {
     Eigen::VectorXd values;
-    if (const auto svd = svd_of(method)) {
-        values = right_singular(periodicity(bar, pattern), *svd).values;
+    if (method == KernelMethod::dense_svd) {
+        values = right_singular(periodicity(bar, pattern)).values;
     } else if (method == KernelMethod::rank_revealing_qr) {
         values = pivoted_qr(periodicity(bar, pattern).transpose()).pivots;
     } else {

@@ -13,7 +13,6 @@ namespace nsma {
 enum class KernelMethod {
     exact_cycles,       ///< the program's own: walks cycles, integers only
     dense_svd,          ///< singular vectors of S_T by Jacobi rotations, zero up to the tolerance
-    divided_svd,        ///< the same by divide and conquer (Eigen::BDCSVD)
     rank_revealing_qr,  ///< pivoted QR of the transpose of S_T, rank by the tolerance
     matrix_powers       ///< limit of ((I + A_c^p A_f^r)/2)^(2^k): the projector on the kernel,
                         ///< since the steps are orthogonal in the energy norm
