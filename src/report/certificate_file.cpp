@@ -8,7 +8,7 @@
 
 #include "one_line.hpp"
 
-#include "nsma/report/scene_file.hpp"
+#include "nsma/report/input_error.hpp"
 
 namespace nsma {
 namespace {

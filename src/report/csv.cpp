@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "one_line.hpp"
-#include "nsma/report/scene_file.hpp"
+#include "nsma/report/input_error.hpp"
 
 namespace nsma {
 

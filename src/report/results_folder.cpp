@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "one_line.hpp"
-#include "nsma/report/scene_file.hpp"
+#include "nsma/report/input_error.hpp"
 
 namespace nsma {
 

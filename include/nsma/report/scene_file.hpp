@@ -1,20 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "nsma/study/scene.hpp"
+#include "nsma/report/input_error.hpp"
 
 namespace nsma {
-
-/// A scene, flag or folder the user can mend: the message is one line with what, where,
-/// expected and got.
-class InputError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
 
 /// Reads and checks a scene file (TOML, SI units). Every key is required unless the README says
 /// otherwise; unknown, missing, mistyped or out-of-range keys throw InputError naming file,

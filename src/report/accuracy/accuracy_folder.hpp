@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "study/accuracy/accuracy_records.hpp"
-#include "nsma/report/scene_file.hpp"
+#include "nsma/report/input_error.hpp"
 #include "report/charts.hpp"
 
 namespace nsma {

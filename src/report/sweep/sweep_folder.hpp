@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "nsma/study/records.hpp"
-#include "nsma/report/scene_file.hpp"
+#include "nsma/study/scene.hpp"
+#include "nsma/report/input_error.hpp"
 
 namespace nsma {
 

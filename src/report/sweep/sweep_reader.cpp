@@ -8,6 +8,7 @@
 
 #include "sweep_folder.hpp"
 #include "sweep_store.hpp"
+#include "nsma/report/scene_file.hpp"
 #include "report/csv.hpp"
 #include "report/one_line.hpp"
 

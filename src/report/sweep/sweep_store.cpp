@@ -15,6 +15,7 @@
 
 #include "sweep_folder.hpp"
 #include "study/sweep/record_rows.hpp"
+#include "nsma/report/scene_file.hpp"
 #include "report/results_folder.hpp"
 
 namespace nsma {

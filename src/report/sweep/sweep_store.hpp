@@ -6,7 +6,7 @@
 #include <string>
 
 #include "study/sweep/sweep_work.hpp"
-#include "nsma/report/scene_file.hpp"
+#include "nsma/report/input_error.hpp"
 
 namespace nsma {
 
