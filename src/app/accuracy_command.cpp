@@ -1,52 +1,41 @@
 #include <fmt/format.h>
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "progress.hpp"
 
 #include "study/accuracy/accuracy.hpp"
-#include "nsma/report/scene_file.hpp"
+#include "nsma/report/input_error.hpp"
 #include "report/accuracy/accuracy_folder.hpp"
 
 namespace nsma::app {
 namespace {
 
-// The folder's sink, with progress for the user.
-class WatchedSink final : public AccuracySink {
+class WatchedFolder final : public AccuracyFolder {
 public:
-    WatchedSink(AccuracyFolder& folder, Progress& progress) : folder_(folder), progress_(progress) {}
-    void program(const ProgramRecord& record) override { folder_.program(record); }
-    void kernel(const KernelRecord& record) override { folder_.kernel(record); }
-    void march(const MarchRecord& record) override { folder_.march(record); }
-    void drift(const DriftRecord& record) override { folder_.drift(record); }
-    void stability(const StabilityRecord& record) override { folder_.stability(record); }
-    void tolerance(const ToleranceRecord& record) override { folder_.tolerance(record); }
+    WatchedFolder(const std::filesystem::path& folder, const Scene& scene, bool quiet)
+        : AccuracyFolder(folder, scene), progress_("accuracy", quiet) {}
     void progress(long done, long total) override { progress_.show(done, total); }
+    void clear_progress() { progress_.clear(); }
 
 private:
-    AccuracyFolder& folder_;
-    Progress& progress_;
+    Progress progress_;
 };
 
 }  // namespace
 
-int run(const AccuracyArguments& arguments, const std::atomic<bool>& stop) {
-    const Scene scene = load_scene({arguments.scene_file, std::nullopt, std::nullopt});
+int run_accuracy(const Arguments& arguments, const std::atomic<bool>& stop) {
+    const Scene scene = arguments.scene();
     if (scene.bar.gap_sign() == 0) {
-        throw InputError(
-            fmt::format("{}: gap: expected one that is not zero: a closed gap has no energy interval to study, got 0",
-                        arguments.scene_file));
+        throw InputError(arguments.input +
+                         ": gap: expected one that is not zero: a closed gap has no energy interval to study, got 0");
     }
     if (is_extreme(scene.objective)) {
-        throw InputError(fmt::format("{}: objective: expected one at a given energy, got {}", arguments.scene_file,
+        throw InputError(fmt::format("{}: objective: expected one at a given energy, got {}", arguments.input,
                                      name(scene.objective)));
     }
-    AccuracyFolder folder(arguments.out, scene);
-    bool whole = false;
-    {
-        Progress progress("accuracy", arguments.quiet);
-        WatchedSink sink(folder, progress);
-        whole = accuracy(scene, {arguments.quick}, sink, [&] { return !stop.load(); });
-    }
+    WatchedFolder folder(arguments.out, scene, arguments.quiet);
+    const bool whole = accuracy(scene, {arguments.quick}, folder, [&] { return !stop.load(); });
+    folder.clear_progress();
     if (!whole) {
         fmt::print("interrupted: the rows so far are in {} as .part files\n", arguments.out);
         return exit_interrupted;
@@ -58,7 +47,6 @@ int run(const AccuracyArguments& arguments, const std::atomic<bool>& stop) {
         fmt::print("chart    {}\n", (charts / (chart.name + ".png")).string());
     }
     fmt::print("results are in {}\n", arguments.out);
-    if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     return exit_done;
 }
 

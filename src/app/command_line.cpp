@@ -1,121 +1,223 @@
-#include "command_line.hpp"
-#include "numerics/solver.hpp"
-
 #include <array>
 #include <cmath>
-#include <map>
+#include <functional>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "command.hpp"
 
 #include "numerics/linear_program.hpp"
-#include "nsma/report/scene_file.hpp"
+#include "numerics/solver.hpp"
+#include "nsma/report/input_error.hpp"
+#include "report/one_line.hpp"
 
 namespace nsma::app {
 namespace {
 
-constexpr const char* exit_codes =
-    "Exit: 0 done, 2 bad usage or scene, 3 nothing admissible, 4 a solver failed, the two\n"
-    "disagree beyond tolerance or a proof does not hold, 130 interrupted (what was done is kept).";
+using Option = std::function<void(CLI::App& command, Arguments& arguments)>;
 
-const CLI::Validator finite{[](const std::string& text) -> std::string {
-                                double value = 0;
-                                if (CLI::detail::lexical_cast(text, value) && std::isfinite(value)) return {};
-                                return "expected a finite number, got " + text;
-                            },
-                            "NUMBER"};
+// Accepts the values that fit; `description` stands in the help, `expected` in the refusal.
+template <class Value, class Fits>
+CLI::Validator expect(const char* description, const std::string& expected, Fits fits) {
+    return {[expected, fits](const std::string& text) -> std::string {
+                Value value{};
+                if (CLI::detail::lexical_cast(text, value) && fits(value)) return {};
+                return "expected " + expected + ", got " + text;
+            },
+            description};
+}
 
-const CLI::Validator finite_positive{
-    [](const std::string& text) -> std::string {
-        double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return {};
-        return "expected a finite number > 0, got " + text;
-    },
-    "NUMBER>0"};
+CLI::Validator finite() {
+    return expect<double>("NUMBER", "a finite number", [](double value) { return std::isfinite(value); });
+}
 
 CLI::Validator whole(int lo, int hi) {
-    return {[lo, hi](const std::string& text) -> std::string {
-                std::int64_t value = 0;
-                if (CLI::detail::lexical_cast(text, value) && value >= lo && value <= hi) return {};
-                return "expected a whole number in " + std::to_string(lo) + ".." + std::to_string(hi) + ", got " + text;
-            },
-            "INTEGER"};
+    return expect<std::int64_t>("INTEGER", fmt::format("a whole number in {}..{}", lo, hi),
+                                [lo, hi](std::int64_t value) { return value >= lo && value <= hi; });
 }
 
-const CLI::Validator objective_validator{
-    [](const std::string& text) -> std::string {
-        if (objective_named(text)) return {};
-        return "expected least-shock, nearest, least-force, min-energy or max-energy, got " + text;
-    },
-    "NAME"};
-
-void add_scene(CLI::App& command, SceneArguments& scene) {
-    command.add_option("SCENE", scene.file, "scene file (TOML)")->required();
-    command.add_option("--cells", scene.cells, "cells N instead of the scene's")->check(whole(1, max_cells));
-    command.add_option("--gap", scene.gap, "gap d [m] instead of the scene's; negative: prestressed")->check(finite);
+Option text(const char* name, std::string Arguments::*value, const char* help) {
+    return
+        [=](CLI::App& command, Arguments& arguments) { command.add_option(name, arguments.*value, help)->required(); };
 }
 
-void add_period(CLI::App& command, std::vector<double>& period) {
-    command.add_option("--period", period, "periods LO HI in units of tau instead of the scene's patterns")
+Option flag(const char* name, bool Arguments::*value, const char* help) {
+    return [=](CLI::App& command, Arguments& arguments) { command.add_flag(name, arguments.*value, help); };
+}
+
+void bar_and_mesh(CLI::App& command, Arguments& arguments) {
+    command.add_option("--cells", arguments.cells, "cells N instead of the scene's")->check(whole(1, max_cells));
+    command.add_option("--gap", arguments.gap, "gap d [m] instead of the scene's; negative: prestressed")
+        ->check(finite());
+}
+
+void period(CLI::App& command, Arguments& arguments) {
+    const auto set = [&](const std::vector<double>& bounds) { arguments.period = {bounds.at(0), bounds.at(1)}; };
+    command
+        .add_option_function<std::vector<double>>("--period", set,
+                                                  "periods LO HI in units of tau instead of the scene's patterns")
         ->expected(2)
-        ->check(finite);
+        ->check(finite());
 }
 
-std::optional<std::array<double, 2>> checked_period(const std::vector<double>& period) {
-    if (period.empty()) return std::nullopt;
-    if (period[0] < 0 || period[1] < period[0]) {
-        throw InputError("command line: --period: expected 0 <= LO <= HI, got " + std::to_string(period[0]) + " " +
-                         std::to_string(period[1]));
-    }
-    return std::array{period[0], period[1]};
+void method(CLI::App& command, Arguments& arguments) {
+    const auto set = [&](const std::string& word) {
+        arguments.method = word == "integers" ? ScanMethod::integers : ScanMethod::certified;
+    };
+    command
+        .add_option_function<std::string>(
+            "--method", set, "certified (default: every verdict with its proof) or integers (verdicts alone)")
+        ->check(CLI::IsMember({"certified", "integers"}));
 }
 
-void add_all_kinds(CLI::App& command, bool& all_kinds) {
-    command.add_flag("--all-kinds", all_kinds,
-                     "also solve patterns whose orbits never press against the wall (free) or never leave it (stuck)");
+// --free and --contact: one pattern, or unless `required` instead of the scene's.
+Option pattern(bool required) {
+    return [required](CLI::App& command, Arguments& arguments) {
+        const std::string of_one = required ? "" : " of one pattern";
+        const CLI::Validator steps = whole(1, max_period_steps / 2);
+        auto* free = command.add_option("--free", arguments.free_steps, "free flight r [steps]" + of_one);
+        auto* contact = command.add_option("--contact", arguments.contact_steps, "contact phase p [steps]" + of_one);
+        free->check(steps)->required(required);
+        contact->check(steps)->required(required);
+        if (required) return;
+        free->needs(contact);
+        contact->needs(free);
+    };
 }
 
-void add_distinct(CLI::App& command, bool& distinct) {
-    command.add_flag("--distinct", distinct,
-                     "leave out of levels.csv and orbits.jsonl what a row above has under another label");
+void energy(CLI::App& command, Arguments& arguments) {
+    auto* const free = command.get_option("--free");
+    const bool always = free->get_required();
+    auto* const option =
+        command.add_option("--energy", arguments.energy,
+                           always ? "energy ratio E/E_g (joules for a closed gap); without it the least-energy orbit"
+                                  : "energy ratio E/E_g of one pattern (joules for a closed gap); without it its least "
+                                    "energy");
+    option->check(expect<double>("NUMBER>0", "a finite number > 0",
+                                 [](double value) { return std::isfinite(value) && value > 0; }));
+    if (!always) option->needs(free);
 }
 
-void add_quiet(CLI::App& command, bool& quiet) { command.add_flag("--quiet", quiet, "no progress on stderr"); }
+void objective(CLI::App& command, Arguments& arguments) {
+    const std::string names = "least-shock, nearest, least-force, min-energy or max-energy";
+    const auto set = [&](const std::string& word) { arguments.objective = objective_named(word); };
+    command.add_option_function<std::string>("--objective", set, names + " instead of the scene's")
+        ->check(expect<std::string>("NAME", names, [](const auto& word) { return objective_named(word).has_value(); }));
+}
 
-// Options that a user tunes a solver with; the names of the choices as the user types them.
-struct SolverWords {
-    std::string solver = "proof";
-    void add(CLI::App& command, OrbitSolverOptions& options) {
-        command
-            .add_option("--solver", solver,
-                        "proof: closed forms, a solver only where they prove nothing (default); both: Ipopt and NLopt "
-                        "as well, against each other; ipopt; nlopt")
-            ->check(CLI::Validator(
-                [](const std::string& text) -> std::string {
-                    if (text == "ipopt" || text == "nlopt" || text == "both" || text == "proof") return {};
-                    return "expected ipopt, nlopt, both or proof, got " + text;
-                },
-                "NAME"));
-        command
-            .add_option(
-                "--starts", options.starts,
-                "starts per solver while the optimum is not proved (default 8; a quarter of them above 64 unknowns)")
-            ->check(whole(1, 10'000));
-    }
-    [[nodiscard]] SolverChoice choice() const {
-        if (solver == "ipopt") return SolverChoice::ipopt;
-        if (solver == "nlopt") return SolverChoice::nlopt;
-        return solver == "proof" ? SolverChoice::proof : SolverChoice::both;
-    }
+void solver(CLI::App& command, Arguments& arguments) {
+    const auto known = [](const std::string& word) {
+        return std::find_if(solver_choices.begin(), solver_choices.end(),
+                            [&](const auto& choice) { return choice.first == word; });
+    };
+    command
+        .add_option_function<std::string>(
+            "--solver", [&, known](const std::string& word) { arguments.solver.solvers = known(word)->second; },
+            "proof: closed forms, a solver only where they prove nothing (default); both: Ipopt and NLopt "
+            "as well, against each other; ipopt; nlopt")
+        ->check(expect<std::string>("NAME", "ipopt, nlopt, both or proof",
+                                    [known](const auto& word) { return known(word) != solver_choices.end(); }));
+    command
+        .add_option(
+            "--starts", arguments.solver.starts,
+            "starts per solver while the optimum is not proved (default 8; a quarter of them above 64 unknowns)")
+        ->check(whole(1, 10'000));
+}
+
+struct Entry {
+    const char* name;
+    const char* summary;
+    std::vector<Option> options;
+    const char* examples;
+    Run* run;
 };
 
-// "--gap: Required ..." etc. on one line.
-std::string one_line(std::string text) {
-    for (auto& c : text) {
-        if (c == '\n' || c == '\r') c = ' ';
-    }
-    while (!text.empty() && text.back() == ' ') text.pop_back();
-    return text;
+std::vector<Entry> commands() {
+    const Option scene = text("SCENE", &Arguments::input, "scene file (TOML)");
+    const Option sweep_folder = text("DIR", &Arguments::input, "folder of a sweep");
+    const Option out_folder = text("--out", &Arguments::out, "folder for the results; made if missing");
+    const Option all_kinds =
+        flag("--all-kinds", &Arguments::all_kinds,
+             "also solve patterns whose orbits never press against the wall (free) or never leave it (stuck)");
+    const Option distinct = flag("--distinct", &Arguments::distinct,
+                                 "leave out of levels.csv and orbits.jsonl what a row above has under another label");
+    const Option quiet = flag("--quiet", &Arguments::quiet, "no progress on stderr");
+    return {
+        {"scan",
+         "list the patterns (r, p) with a nontrivial kernel, their verdicts and energy intervals",
+         {scene, bar_and_mesh, period, method, flag("--csv", &Arguments::csv, "CSV on stdout instead of a table"),
+          quiet},
+         "Examples:\n"
+         "  nsma scan problems/first-mode.toml\n"
+         "  nsma scan problems/first-mode.toml --cells 6 --gap 1 --period 0 4 --csv",
+         run_scan},
+        {"orbit",
+         "one orbit of one pattern",
+         {scene, bar_and_mesh, pattern(true), energy, objective, solver,
+          flag("--json", &Arguments::json, "one JSON object on stdout instead of text")},
+         "Examples:\n"
+         "  nsma orbit problems/first-mode.toml --free 48 --contact 16\n"
+         "  nsma orbit problems/first-mode.toml --cells 6 --free 16 --contact 4 --energy 12 --json",
+         run_orbit},
+        {"sweep",
+         "every pattern of the scene at every energy level: table, orbits, charts",
+         {scene, out_folder, solver, all_kinds, distinct,
+          flag("--resume", &Arguments::resume, "go on with what the folder holds; without it all is done anew"), quiet},
+         "Examples:\n"
+         "  nsma sweep problems/first-mode.toml --out out/first-mode\n"
+         "  nsma sweep problems/first-mode.toml --out out/first-mode --resume",
+         run_sweep},
+        {"export",
+         "write the tables and the summary of a stored sweep again",
+         {sweep_folder, distinct},
+         "Example:\n  nsma export out/first-mode",
+         run_export},
+        {"accuracy",
+         "speed against accuracy: every method on the same work, and where each fails",
+         {scene, out_folder, flag("--quick", &Arguments::quick, "small sizes and few runs: seconds instead of minutes"),
+          quiet},
+         "Example:\n  nsma accuracy problems/first-mode.toml --out out/accuracy",
+         run_accuracy},
+        {"sensitivity",
+         "which condition decides, how much, and what happens when it is relaxed",
+         {scene, pattern(false), energy, objective, out_folder, solver, all_kinds, quiet},
+         "Examples:\n"
+         "  nsma sensitivity problems/first-mode.toml --out out/sensitivity\n"
+         "  nsma sensitivity problems/first-mode.toml --free 48 --contact 16 --energy 30 --out out/one",
+         run_sensitivity},
+        {"plot",
+         "draw the charts of a stored sweep again",
+         {sweep_folder, flag("--quiet", &Arguments::quiet, "print no list of charts")},
+         "Example:\n  nsma plot out/first-mode",
+         run_plot},
+        {"prove",
+         "write exact certificates of the verdicts and energy intervals, one a line",
+         {scene, bar_and_mesh, period, pattern(false),
+          text("--out", &Arguments::out, "file to write; must not exist yet; until it is complete FILE.part"), quiet},
+         "Examples:\n"
+         "  nsma prove problems/first-mode.toml --cells 6 --free 16 --contact 4 --out proof.jsonl\n"
+         "  nsma prove problems/first-mode.toml --cells 24 --period 0 4 --out proofs.jsonl",
+         run_prove},
+        {"check",
+         "verify certificates from their four integers alone, in exact arithmetic",
+         {text("FILE", &Arguments::input, "certificates written by nsma prove")},
+         "Example:\n  nsma check proofs.jsonl",
+         run_check},
+    };
 }
+
+constexpr const char* examples_and_exit_codes =
+    "Examples:\n"
+    "  nsma scan problems/first-mode.toml --cells 6 --period 0 4\n"
+    "  nsma orbit problems/first-mode.toml --free 48 --contact 16 --energy 37.5\n"
+    "  nsma sweep problems/first-mode.toml --out out/first-mode\n"
+    "  nsma sensitivity problems/first-mode.toml --out out/sensitivity\n"
+    "  nsma plot out/first-mode\n"
+    "  nsma prove problems/first-mode.toml --out proofs.jsonl\n"
+    "  nsma check proofs.jsonl\n"
+    "Exit: 0 done, 2 bad usage or scene, 3 nothing admissible, 4 a solver failed, the two\n"
+    "disagree beyond tolerance or a proof does not hold, 130 interrupted (what was done is kept).";
 
 }  // namespace
 
@@ -124,204 +226,35 @@ std::string version() {
            ")";
 }
 
-Arguments parse(int count, const char* const* words) {
+std::optional<Command> read_command_line(int count, const char* const* words) {
     CLI::App app{"Nonsmooth modal analysis of a bar in unilateral contact, by the Wave Finite Element Method.", "nsma"};
     app.require_subcommand(1);
     app.set_version_flag("--version", version());
-    app.footer(std::string("Examples:\n"
-                           "  nsma scan problems/first-mode.toml --cells 6 --period 0 4\n"
-                           "  nsma orbit problems/first-mode.toml --free 48 --contact 16 --energy 37.5\n"
-                           "  nsma sweep problems/first-mode.toml --out out/first-mode\n"
-                           "  nsma sensitivity problems/first-mode.toml --out out/sensitivity\n"
-                           "  nsma plot out/first-mode\n"
-                           "  nsma prove problems/first-mode.toml --out proofs.jsonl\n"
-                           "  nsma check proofs.jsonl\n") +
-               exit_codes);
-
-    ScanArguments scan;
-    std::vector<double> period;
-    auto* scan_command = app.add_subcommand(
-        "scan", "list the patterns (r, p) with a nontrivial kernel, their verdicts and energy intervals");
-    add_scene(*scan_command, scan.scene);
-    add_period(*scan_command, period);
-    std::string method = "certified";
-    scan_command
-        ->add_option("--method", method,
-                     "certified (default: every verdict with its proof) or integers (verdicts alone)")
-        ->check(CLI::IsMember({"certified", "integers"}));
-    scan_command->add_flag("--csv", scan.csv, "CSV on stdout instead of a table");
-    add_quiet(*scan_command, scan.quiet);
-    scan_command->footer(
-        "Examples:\n"
-        "  nsma scan problems/first-mode.toml\n"
-        "  nsma scan problems/first-mode.toml --cells 6 --gap 1 --period 0 4 --csv");
-
-    OrbitArguments orbit;
-    SolverWords orbit_words;
-    std::string objective;
-    auto* orbit_command = app.add_subcommand("orbit", "one orbit of one pattern");
-    add_scene(*orbit_command, orbit.scene);
-    orbit_command->add_option("--free", orbit.free_steps, "free flight r [steps]")
-        ->required()
-        ->check(whole(1, max_period_steps / 2));
-    orbit_command->add_option("--contact", orbit.contact_steps, "contact phase p [steps]")
-        ->required()
-        ->check(whole(1, max_period_steps / 2));
-    orbit_command
-        ->add_option("--energy", orbit.energy,
-                     "energy ratio E/E_g (joules for a closed gap); without it the least-energy orbit")
-        ->check(finite_positive);
-    orbit_command
-        ->add_option("--objective", objective,
-                     "least-shock, nearest, least-force, min-energy or max-energy instead of the scene's")
-        ->check(objective_validator);
-    orbit_words.add(*orbit_command, orbit.solver);
-    orbit_command->add_flag("--json", orbit.json, "one JSON object on stdout instead of text");
-    orbit_command->footer(
-        "Examples:\n"
-        "  nsma orbit problems/first-mode.toml --free 48 --contact 16\n"
-        "  nsma orbit problems/first-mode.toml --cells 6 --free 16 --contact 4 --energy 12 --json");
-
-    SweepArguments sweep;
-    SolverWords sweep_words;
-    auto* sweep_command =
-        app.add_subcommand("sweep", "every pattern of the scene at every energy level: table, orbits, charts");
-    sweep_command->add_option("SCENE", sweep.scene_file, "scene file (TOML)")->required();
-    sweep_command->add_option("--out", sweep.out, "folder for the results; made if missing")->required();
-    sweep_words.add(*sweep_command, sweep.solver);
-    add_all_kinds(*sweep_command, sweep.all_kinds);
-    add_distinct(*sweep_command, sweep.distinct);
-    sweep_command->add_flag("--resume", sweep.resume, "go on with what the folder holds; without it all is done anew");
-    add_quiet(*sweep_command, sweep.quiet);
-    sweep_command->footer(
-        "Examples:\n  nsma sweep problems/first-mode.toml --out out/first-mode\n"
-        "  nsma sweep problems/first-mode.toml --out out/first-mode --resume");
-
-    ExportArguments exported;
-    auto* export_command = app.add_subcommand("export", "write the tables and the summary of a stored sweep again");
-    export_command->add_option("DIR", exported.folder, "folder of a sweep")->required();
-    add_distinct(*export_command, exported.distinct);
-    export_command->footer("Example:\n  nsma export out/first-mode");
-
-    AccuracyArguments accuracy;
-    auto* accuracy_command =
-        app.add_subcommand("accuracy", "speed against accuracy: every method on the same work, and where each fails");
-    accuracy_command->add_option("SCENE", accuracy.scene_file, "scene file (TOML)")->required();
-    accuracy_command->add_option("--out", accuracy.out, "folder for the results; made if missing")->required();
-    accuracy_command->add_flag("--quick", accuracy.quick, "small sizes and few runs: seconds instead of minutes");
-    add_quiet(*accuracy_command, accuracy.quiet);
-    accuracy_command->footer("Example:\n  nsma accuracy problems/first-mode.toml --out out/accuracy");
-
-    SensitivityArguments sensitivity;
-    SolverWords sensitivity_words;
-    std::string sensitivity_objective;
-    auto* sensitivity_command =
-        app.add_subcommand("sensitivity", "which condition decides, how much, and what happens when it is relaxed");
-    sensitivity_command->add_option("SCENE", sensitivity.scene_file, "scene file (TOML)")->required();
-    auto* sensitivity_free =
-        sensitivity_command->add_option("--free", sensitivity.free_steps, "free flight r [steps] of one pattern")
-            ->check(whole(1, max_period_steps / 2));
-    auto* sensitivity_contact =
-        sensitivity_command
-            ->add_option("--contact", sensitivity.contact_steps, "contact phase p [steps] of one pattern")
-            ->check(whole(1, max_period_steps / 2));
-    sensitivity_free->needs(sensitivity_contact);
-    sensitivity_contact->needs(sensitivity_free);
-    sensitivity_command
-        ->add_option("--energy", sensitivity.energy,
-                     "energy ratio E/E_g of one pattern (joules for a closed gap); without it its least energy")
-        ->check(finite_positive)
-        ->needs(sensitivity_free);
-    sensitivity_command
-        ->add_option("--objective", sensitivity_objective,
-                     "least-shock, nearest, least-force, min-energy or max-energy instead of the scene's")
-        ->check(objective_validator);
-    sensitivity_command->add_option("--out", sensitivity.out, "folder for the results; made if missing")->required();
-    sensitivity_words.add(*sensitivity_command, sensitivity.solver);
-    add_all_kinds(*sensitivity_command, sensitivity.all_kinds);
-    add_quiet(*sensitivity_command, sensitivity.quiet);
-    sensitivity_command->footer(
-        "Examples:\n"
-        "  nsma sensitivity problems/first-mode.toml --out out/sensitivity\n"
-        "  nsma sensitivity problems/first-mode.toml --free 48 --contact 16 --energy 30 --out out/one");
-
-    PlotArguments plot;
-    auto* plot_command = app.add_subcommand("plot", "draw the charts of a stored sweep again");
-    plot_command->add_option("DIR", plot.folder, "folder of a sweep")->required();
-    plot_command->add_flag("--quiet", plot.quiet, "print no list of charts");
-    plot_command->footer("Example:\n  nsma plot out/first-mode");
-
-    ProveArguments prove;
-    std::vector<double> prove_period;
-    auto* prove_command =
-        app.add_subcommand("prove", "write exact certificates of the verdicts and energy intervals, one a line");
-    add_scene(*prove_command, prove.scene);
-    add_period(*prove_command, prove_period);
-    auto* prove_free = prove_command->add_option("--free", prove.free_steps, "free flight r [steps] of one pattern")
-                           ->check(whole(1, max_period_steps / 2));
-    auto* prove_contact =
-        prove_command->add_option("--contact", prove.contact_steps, "contact phase p [steps] of one pattern")
-            ->check(whole(1, max_period_steps / 2));
-    prove_free->needs(prove_contact);
-    prove_contact->needs(prove_free);
-    prove_command->add_option("--out", prove.out, "file to write; must not exist yet; until it is complete FILE.part")
-        ->required();
-    add_quiet(*prove_command, prove.quiet);
-    prove_command->footer(
-        "Examples:\n"
-        "  nsma prove problems/first-mode.toml --cells 6 --free 16 --contact 4 --out proof.jsonl\n"
-        "  nsma prove problems/first-mode.toml --cells 24 --period 0 4 --out proofs.jsonl");
-
-    CheckArguments check;
-    auto* check_command =
-        app.add_subcommand("check", "verify certificates from their four integers alone, in exact arithmetic");
-    check_command->add_option("FILE", check.file, "certificates written by nsma prove")->required();
-    check_command->footer("Example:\n  nsma check proofs.jsonl");
-
-    for (auto* command : {scan_command, orbit_command, sweep_command, accuracy_command, sensitivity_command,
-                          export_command, plot_command, prove_command, check_command}) {
+    app.footer(examples_and_exit_codes);
+    Command chosen;
+    for (const Entry& entry : commands()) {
+        CLI::App* command = app.add_subcommand(entry.name, entry.summary);
+        for (const Option& option : entry.options) option(*command, chosen.arguments);
+        command->footer(entry.examples);
         command->failure_message(CLI::FailureMessage::simple);
+        command->callback([&chosen, run = entry.run] { chosen.run = run; });
     }
     try {
         app.parse(count, words);
+        return chosen;
     } catch (const CLI::CallForHelp&) {
-        const auto chosen = app.get_subcommands();
-        return TextArguments{chosen.empty() ? app.help() : chosen.front()->help()};
+        const auto named = app.get_subcommands();
+        fmt::print("{}", named.empty() ? app.help() : named.front()->help());
     } catch (const CLI::CallForAllHelp&) {
-        return TextArguments{app.help("", CLI::AppFormatMode::All)};
+        fmt::print("{}", app.help("", CLI::AppFormatMode::All));
     } catch (const CLI::CallForVersion&) {
-        return TextArguments{version() + "\n"};
+        fmt::print("{}\n", version());
     } catch (const CLI::ParseError& error) {
-        throw InputError("command line: " + one_line(error.what()) + " (see nsma --help)");
+        std::string message = one_line(error.what());
+        while (message.ends_with(' ')) message.pop_back();
+        throw InputError("command line: " + message + " (see nsma --help)");
     }
-
-    if (*scan_command) {
-        scan.period = checked_period(period);
-        if (method == "integers") scan.method = ScanMethod::integers;
-        return scan;
-    }
-    if (*orbit_command) {
-        orbit.solver.solvers = orbit_words.choice();
-        if (!objective.empty()) orbit.objective = objective_named(objective);
-        return orbit;
-    }
-    if (*sensitivity_command) {
-        sensitivity.solver.solvers = sensitivity_words.choice();
-        if (!sensitivity_objective.empty()) sensitivity.objective = objective_named(sensitivity_objective);
-        return sensitivity;
-    }
-    if (*sweep_command) {
-        sweep.solver.solvers = sweep_words.choice();
-        return sweep;
-    }
-    if (*prove_command) {
-        prove.period = checked_period(prove_period);
-        return prove;
-    }
-    if (*check_command) return check;
-    if (*export_command) return exported;
-    if (*accuracy_command) return accuracy;
-    return plot;
+    return std::nullopt;
 }
 
 }  // namespace nsma::app

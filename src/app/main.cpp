@@ -2,16 +2,15 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <variant>
 
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "crew.hpp"
 
-#include "nsma/report/scene_file.hpp"
+#include "nsma/report/input_error.hpp"
 
 namespace {
 
@@ -47,8 +46,12 @@ int main(int count, char** words) {
     keep_freed_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error like a full disk
     try {
-        const auto arguments = nsma::app::parse(count, words);
-        return std::visit([](const auto& chosen) { return nsma::app::run(chosen, stop_requested); }, arguments);
+        const auto command = nsma::app::read_command_line(count, words);
+        const int code = command ? command->run(command->arguments, stop_requested) : nsma::app::exit_done;
+        // After Ctrl-C the reader of a pipe may be gone as well.
+        if (code != nsma::app::exit_interrupted && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0))
+            throw nsma::InputError("stdout: expected room to write, got an error");
+        return code;
     } catch (const nsma::InputError& error) {
         if (!nsma::app::silent_rank()) std::fprintf(stderr, "nsma: %s\n", error.what());
         return nsma::app::exit_input;

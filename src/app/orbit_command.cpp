@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 
-#include "commands.hpp"
+#include "command.hpp"
 
 #include "nsma/report/orbit_json.hpp"
-#include "nsma/report/scene_file.hpp"
 #include "report/sweep/tables.hpp"
 
 namespace nsma::app {
@@ -94,37 +93,8 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
     fmt::print("\ngap           {:g} m\n", bar.gap);
 }
 
-}  // namespace
-
-int run(const OrbitArguments& arguments, const std::atomic<bool>&) {
-    const Scene scene = load_scene(arguments.scene);
-    const Pattern pattern{scene.mesh.cells, arguments.free_steps, arguments.contact_steps};
-    const int gap_sign = scene.bar.gap_sign();
-    OrbitRequest request;
-    request.objective = arguments.objective.value_or(scene.objective);
-    request.level = arguments.energy;
-    const bool extreme = is_extreme(request.objective);
-    if (extreme && request.level) {
-        throw InputError(fmt::format("command line: --energy: expected none with objective {}, got {}",
-                                     name(request.objective), *request.level));
-    }
-    if (gap_sign == 0 && extreme) {
-        throw InputError(
-            fmt::format("command line: --objective: expected one at a given energy for a closed gap, got {}",
-                        name(request.objective)));
-    }
-    if (gap_sign == 0 && !request.level) {
-        throw InputError("command line: --energy: expected joules (a closed gap has no least-energy orbit), got none");
-    }
-    OrbitSolver solver(arguments.solver);
-    const PatternProblem problem = pattern_problem(pattern, gap_sign);
-    const OrbitAnswer answer = solver.solve(scene.bar, problem, request);
-    if (arguments.json) {
-        fmt::print("{}\n", orbit_json(answer, scene.bar));
-    } else {
-        print_text(answer, problem.set.reduction, scene.bar);
-    }
-    if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
+// The exit code of an answer.
+int exit_code(const OrbitAnswer& answer) {
     switch (answer.verdict) {
         case Verdict::admissible: break;
         case Verdict::failed:
@@ -137,6 +107,24 @@ int run(const OrbitArguments& arguments, const std::atomic<bool>&) {
         case Agreement::single: return exit_done;
         default: return exit_solver;
     }
+}
+
+}  // namespace
+
+int run_orbit(const Arguments& arguments, const std::atomic<bool>&) {
+    const Scene scene = arguments.scene();
+    arguments.check_energy(scene, "command line: --objective");
+    OrbitRequest request;
+    request.objective = scene.objective;
+    request.level = arguments.energy;
+    const PatternProblem problem = pattern_problem(arguments.patterns(scene).front(), scene.bar.gap_sign());
+    const OrbitAnswer answer = OrbitSolver(arguments.solver).solve(scene.bar, problem, request);
+    if (arguments.json) {
+        fmt::print("{}\n", orbit_json(answer, scene.bar));
+    } else {
+        print_text(answer, problem.set.reduction, scene.bar);
+    }
+    return exit_code(answer);
 }
 
 }  // namespace nsma::app

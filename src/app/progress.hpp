@@ -10,11 +10,12 @@ namespace nsma::app {
 class Progress {
 public:
     Progress(std::string what, bool quiet);
-    ~Progress();  ///< clears the bar
+    ~Progress() { clear(); }
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
     void show(long done, long total);
+    void clear();  ///< takes the bar from the terminal
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -1,16 +1,16 @@
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <set>
 
 #include <fmt/format.h>
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "crew.hpp"
 #include "progress.hpp"
 
 #include "study/sweep/sweep_queue.hpp"
 #include "study/sweep/work_messages.hpp"
-#include "nsma/report/scene_file.hpp"
 #include "report/charts.hpp"
 #include "report/sweep/sweep_store.hpp"
 #include "report/sweep/tables.hpp"
@@ -28,11 +28,9 @@ void draw(const std::string& folder, bool list = true) {
 
 // What decides an answer besides scene and software.
 std::string options_text(const OrbitSolverOptions& options, bool all_kinds) {
-    const char* solvers = options.solvers == SolverChoice::both    ? "both"
-                          : options.solvers == SolverChoice::proof ? "proof"
-                          : options.solvers == SolverChoice::ipopt ? "ipopt"
-                                                                   : "nlopt";
-    return fmt::format("solver {}, starts {}, tolerance {}, kinds {}", solvers, options.starts,
+    const auto* solver = std::find_if(solver_choices.begin(), solver_choices.end(),
+                                      [&](const auto& choice) { return choice.second == options.solvers; });
+    return fmt::format("solver {}, starts {}, tolerance {}, kinds {}", solver->first, options.starts,
                        options.solver.tolerance, all_kinds ? "all" : "contact");
 }
 
@@ -79,11 +77,37 @@ void share(Crew& crew, const Scene& scene, SweepQueue& queue,
     }
 }
 
+// Everything that is not yet in the store, until stop is asked.
+void solve(const Arguments& arguments, Crew& crew, const Scene& scene, SweepStore& store,
+           const std::atomic<bool>& stop) {
+    SweepQueue queue(scene, arguments.solver,
+                     crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
+    if (arguments.resume) store.for_each([&queue](const WorkResult& result) { queue.done(result); });
+    const auto begin = std::chrono::steady_clock::now();
+    Progress progress("sweep", arguments.quiet);
+    const auto keep = [&](const std::vector<WorkResult>& results) {
+        store.put(results);
+        for (const WorkResult& result : results) queue.done(result);
+        progress.show(queue.done_count(), queue.total_count());
+    };
+    if (crew.workers() > 0) share(crew, scene, queue, keep, stop);
+    // Alone, or with everyone else gone.
+    SweepWorker worker(scene, arguments.solver);
+    while (!queue.finished() && !stop.load()) {
+        const auto units = queue.next(own_worker);
+        if (units.empty()) break;
+        keep(worker.run(units));
+    }
+    if (!store.complete()) {
+        store.add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    }
+    if (queue.finished()) store.finish();  // also what a kill left complete but not yet under its name
+}
+
 }  // namespace
 
-int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
-    Scene scene = load_scene({arguments.scene_file, std::nullopt, std::nullopt});
-    if (arguments.all_kinds) scene.all_kinds = true;
+int run_sweep(const Arguments& arguments, const std::atomic<bool>& stop) {
+    const Scene scene = arguments.scene();
     Crew crew;
     if (crew.helper()) {
         help(crew, scene, arguments.solver);
@@ -91,42 +115,14 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
     }
     SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver, scene.all_kinds)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
-    SweepQueue queue(scene, arguments.solver,
-                     crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
-    if (arguments.resume) store.for_each([&queue](const WorkResult& result) { queue.done(result); });
-    const auto begin = std::chrono::steady_clock::now();
-    {
-        Progress progress("sweep", arguments.quiet);
-        const auto keep = [&](const std::vector<WorkResult>& results) {
-            store.put(results);
-            for (const WorkResult& result : results) queue.done(result);
-            progress.show(queue.done_count(), queue.total_count());
-        };
-        if (crew.workers() > 0) {
-            share(crew, scene, queue, keep, stop);
-        }
-        // Alone, or with everyone else gone.
-        SweepWorker worker(scene, arguments.solver);
-        while (!queue.finished() && !stop.load()) {
-            const auto units = queue.next(own_worker);
-            if (units.empty()) break;
-            keep(worker.run(units));
-        }
-    }
-    if (!store.complete()) {
-        store.add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    }
-    if (queue.finished()) store.finish();  // also what a kill left complete but not yet under its name
+    solve(arguments, crew, scene, store, stop);
     const auto [summary, line] = export_sweep(store, arguments.out, arguments.distinct);
     fmt::print("{}{}\n", summary_table(summary), line);
-    if (summary.interrupted) {
-        std::fflush(stdout);
-        return exit_interrupted;
-    }
+    if (summary.interrupted) return exit_interrupted;
     draw(arguments.out);
-    if (std::fflush(stdout) != 0) throw InputError("stdout: expected room to write, got an error");
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
     if (summary.left > 0 && summary.left == summary.admissible) {
+        std::fflush(stdout);
         fmt::print(stderr, "nsma: no pattern of the scene is a contact motion; --all-kinds solves the other {}\n",
                    summary.left);
     }
@@ -134,19 +130,14 @@ int run(const SweepArguments& arguments, const std::atomic<bool>& stop) {
     return found ? exit_done : exit_inadmissible;
 }
 
-int run(const ExportArguments& arguments, const std::atomic<bool>&) {
-    const SweepStore store(arguments.folder);
-    fmt::print("{}\n", export_sweep(store, arguments.folder, arguments.distinct).line);
+int run_export(const Arguments& arguments, const std::atomic<bool>&) {
+    const SweepStore store(arguments.input);
+    fmt::print("{}\n", export_sweep(store, arguments.input, arguments.distinct).line);
     return exit_done;
 }
 
-int run(const PlotArguments& arguments, const std::atomic<bool>&) {
-    draw(arguments.folder, !arguments.quiet);
-    return exit_done;
-}
-
-int run(const TextArguments& arguments, const std::atomic<bool>&) {
-    fmt::print("{}", arguments.text);
+int run_plot(const Arguments& arguments, const std::atomic<bool>&) {
+    draw(arguments.input, !arguments.quiet);
     return exit_done;
 }
 
