@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "sample.hpp"
+#include "nsma/report/scene_file.hpp"
 #include "report/gnuplot.hpp"
 
 namespace nsma {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sample.hpp"
+#include "nsma/report/scene_file.hpp"
 
 namespace nsma {
 namespace {

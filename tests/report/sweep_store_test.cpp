@@ -8,6 +8,7 @@
 
 #include "../study/run_sweep.hpp"
 #include "sample.hpp"
+#include "nsma/report/scene_file.hpp"
 #include "study/sweep/sweep_queue.hpp"
 
 namespace nsma {
