@@ -8,20 +8,6 @@
 #include "report/accuracy/accuracy_folder.hpp"
 
 namespace nsma::app {
-namespace {
-
-class WatchedFolder final : public AccuracyFolder {
-public:
-    WatchedFolder(const std::filesystem::path& folder, const Scene& scene, bool quiet)
-        : AccuracyFolder(folder, scene), progress_("accuracy", quiet) {}
-    void progress(long done, long total) override { progress_.show(done, total); }
-    void clear_progress() { progress_.clear(); }
-
-private:
-    Progress progress_;
-};
-
-}  // namespace
 
 int run_accuracy(const Arguments& arguments, const std::atomic<bool>& stop) {
     const Scene scene = arguments.scene();
@@ -33,9 +19,17 @@ int run_accuracy(const Arguments& arguments, const std::atomic<bool>& stop) {
         throw InputError(fmt::format("{}: objective: expected one at a given energy, got {}", arguments.input,
                                      name(scene.objective)));
     }
-    WatchedFolder folder(arguments.out, scene, arguments.quiet);
-    const bool whole = accuracy(scene, {arguments.quick}, folder, [&] { return !stop.load(); });
-    folder.clear_progress();
+    AccuracyFolder folder(arguments.out, scene);
+    bool whole = false;
+    {
+        Progress progress("accuracy", arguments.quiet);
+        whole = accuracy(
+            scene, arguments.quick, [&](const AccuracyRecord& record) { folder.add(record); },
+            [&](long done, long total) {
+                progress.show(done, total);
+                return !stop.load();
+            });
+    }
     if (!whole) {
         fmt::print("interrupted: the rows so far are in {} as .part files\n", arguments.out);
         return exit_interrupted;

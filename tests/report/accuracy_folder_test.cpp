@@ -40,19 +40,19 @@ ProgramRecord program(const char* method, int size, double seconds, double error
     record.size = size;
     record.method = method;
     record.setting = "tol 1e-08, polish";
-    record.runs = record.succeeded = 3;
+    record.runs = record.outcomes[0] = 3;
     record.seconds = {seconds, 0.9 * seconds, 1.1 * seconds};
     record.error = error;
     return record;
 }
 
 void fill(AccuracyFolder& folder) {
-    folder.program(program("SLSQP", 2, 1e-4, 1e-15));
-    folder.program(program("Ipopt", 2, 1e-2, 1e-9));
-    folder.program(program("SLSQP", 8, 1e-3, 1e-15));
-    folder.kernel({{5, 12, 4}, "exact cycles", {1e-6, 1e-6, 2e-6}, 2, 2, 0.0});
-    folder.march({5, "wave queue", "", true, 16, {1e-6, 1e-6, 1e-6}, 0.0, 0.0});
-    folder.drift({5, "FE, \"quoted\"", "a, b", 10, 1e-3, 1e-2, 0.1});
+    folder.add(program("SLSQP", 2, 1e-4, 1e-15));
+    folder.add(program("Ipopt", 2, 1e-2, 1e-9));
+    folder.add(program("SLSQP", 8, 1e-3, 1e-15));
+    folder.add(nsma::KernelRecord{{5, 12, 4}, "exact cycles", {1e-6, 1e-6, 2e-6}, 2, 2, 0.0});
+    folder.add(nsma::MarchRecord{5, "wave queue", "", true, 16, {1e-6, 1e-6, 1e-6}, 0.0, 0.0});
+    folder.add(nsma::DriftRecord{5, "FE, \"quoted\"", "a, b", 10, 1e-3, 1e-2, 0.1});
     nsma::StabilityRecord cell;
     cell.map = "level";
     cell.pattern = {5, 12, 4};
@@ -61,10 +61,10 @@ void fill(AccuracyFolder& folder) {
     cell.difficulty = "E_min (1 + 1e-08)";
     cell.runs = cell.reported = 2;
     cell.outcomes[0] = cell.outcomes[2] = 1;
-    folder.stability(cell);
+    folder.add(cell);
     cell.map = "rows";
-    folder.stability(cell);
-    folder.tolerance({{5, 12, 4}, "dense SVD", 1e-9, 3, 2});
+    folder.add(cell);
+    folder.add(nsma::ToleranceRecord{{5, 12, 4}, "dense SVD", 1e-9, 3, 2});
 }
 
 TEST_F(AccuracyFolderTest, WritesEveryTableAndDrawsEveryChart) {

@@ -14,22 +14,15 @@ namespace {
 
 using nsma::Outcome;
 
-struct Records final : nsma::AccuracySink {
-    void program(const nsma::ProgramRecord& record) override { programs.push_back(record); }
-    void kernel(const nsma::KernelRecord& record) override { kernels.push_back(record); }
-    void march(const nsma::MarchRecord& record) override { marches.push_back(record); }
-    void drift(const nsma::DriftRecord& record) override { drifts.push_back(record); }
-    void stability(const nsma::StabilityRecord& record) override { cells.push_back(record); }
-    void tolerance(const nsma::ToleranceRecord& record) override { tolerances.push_back(record); }
-    void progress(long done, long total) override { EXPECT_LE(done, total); }
-
-    std::vector<nsma::ProgramRecord> programs;
-    std::vector<nsma::KernelRecord> kernels;
-    std::vector<nsma::MarchRecord> marches;
-    std::vector<nsma::DriftRecord> drifts;
-    std::vector<nsma::StabilityRecord> cells;
-    std::vector<nsma::ToleranceRecord> tolerances;
-};
+// Runs a quick study of a scene, of so many pieces of work at most.
+bool quick_study(const nsma::Scene& scene, nsma::AccuracyResults& seen, long pieces = 1'000'000) {
+    return nsma::accuracy(
+        scene, true, [&](const nsma::AccuracyRecord& record) { seen.add(record); },
+        [&](long done, long total) {
+            EXPECT_LE(done, total);
+            return pieces-- > 0;
+        });
+}
 
 nsma::Scene unit_scene(double gap) {
     nsma::Scene scene;
@@ -61,8 +54,8 @@ TEST(Accuracy, SpreadIsTheMedianAndTheQuartiles) {
 }
 
 TEST(Accuracy, QuickRunEndToEnd) {
-    Records seen;
-    ASSERT_TRUE(nsma::accuracy(unit_scene(1.0), {true}, seen, [] { return true; }));
+    nsma::AccuracyResults seen;
+    ASSERT_TRUE(quick_study(unit_scene(1.0), seen));
 
     std::set<std::string> methods;
     for (const auto& record : seen.programs) {
@@ -70,7 +63,7 @@ TEST(Accuracy, QuickRunEndToEnd) {
         EXPECT_TRUE(record.proved) << record.size;  // every reference is certified
         EXPECT_GT(record.runs, 0);
         if (record.method != "both solvers") continue;
-        EXPECT_EQ(record.succeeded, record.runs);
+        EXPECT_EQ(record.succeeded(), record.runs);
         EXPECT_LE(record.error, 1e-9);
     }
     EXPECT_EQ(methods, (std::set<std::string>{"both solvers", "default", "segment", "Ipopt", "SLSQP", "AUGLAG+LBFGS",
@@ -93,7 +86,7 @@ TEST(Accuracy, QuickRunEndToEnd) {
         }
     }
     std::set<std::string> maps;
-    for (const auto& record : seen.cells) {
+    for (const auto& record : seen.stability) {
         maps.insert(record.map);
         if (record.map == "level") {
             EXPECT_TRUE(record.proved) << record.size << ' ' << record.difficulty;
@@ -119,7 +112,7 @@ TEST(Accuracy, TheWholePathsSucceedInEveryCellOfAReducedMap) {
             const double greatest = *problem.interval.greatest;
             for (const double level : {least * (1 + 1e-10), least * (1 + 1e-4), 0.5 * (least + greatest),
                                        greatest * (1 - 1e-4), greatest * (1 - 1e-10)}) {
-                const nsma::ProgramCase on(bar, problem, nsma::Objective::least_shock, level);
+                const auto on = nsma::solved_case(bar, problem, nsma::Objective::least_shock, level);
                 EXPECT_TRUE(on.proved) << size << ' ' << level;
                 int whole = 0;
                 for (const auto& method : nsma::program_methods(true)) {
@@ -151,7 +144,7 @@ TEST(Accuracy, ReferencesAreProvedAtEverySizeAndProofFirstComesToThem) {
         const auto problem = nsma::pattern_problem(nsma::accuracy_pattern(size, 1), 1);
         for (const double level :
              {1.1 * *problem.interval.least, 1.3 * *problem.interval.least, 0.8 * *problem.interval.greatest}) {
-            const nsma::ProgramCase on(bar, problem, nsma::Objective::least_shock, level);
+            const auto on = nsma::solved_case(bar, problem, nsma::Objective::least_shock, level);
             EXPECT_TRUE(on.proved) << size << ' ' << level;
             for (const auto& method : nsma::program_methods(true)) {
                 if (method.kind != nsma::ProgramMethod::Kind::proof) continue;
@@ -164,7 +157,8 @@ TEST(Accuracy, ReferencesAreProvedAtEverySizeAndProofFirstComesToThem) {
         // Two neighbours are left at 0.8 E_max: x + y = 1, x^2 + y^2 = q, and a run costs x^2 + y^2 + (x - y)^2 = 3 q -
         // 1, so 2N R (3 q - 1) with R = 8 runs a period.
         if (size == 2) continue;  // they are neighbours on both sides there
-        const nsma::ProgramCase top(bar, problem, nsma::Objective::least_shock, 0.8 * *problem.interval.greatest);
+        const auto top =
+            nsma::solved_case(bar, problem, nsma::Objective::least_shock, 0.8 * *problem.interval.greatest);
         const double exact = 2.0 * (2.5 * size) * 8.0 * (3.0 * 0.8 - 1.0);
         EXPECT_NEAR(top.best, exact, 1e-9 * exact) << size;
     }
@@ -173,8 +167,8 @@ TEST(Accuracy, ReferencesAreProvedAtEverySizeAndProofFirstComesToThem) {
 TEST(Accuracy, RawAnswersAreJudgedByReplayNotByTheirStatus) {
     nsma::Bar bar;
     const auto problem = nsma::pattern_problem(nsma::accuracy_pattern(8, 1), 1);
-    const nsma::ProgramCase on(bar, problem, nsma::Objective::least_shock, 1.3 * *problem.interval.least);
-    nsma::ProgramMethod loose{nsma::ProgramMethod::Kind::ipopt, nsma::NloptMethod::slsqp, "Ipopt", 1e-3, false, false};
+    const auto on = nsma::solved_case(bar, problem, nsma::Objective::least_shock, 1.3 * *problem.interval.least);
+    nsma::ProgramMethod loose{.kind = nsma::ProgramMethod::Kind::ipopt, .tolerance = 1e-3, .polish = false};
     nsma::MethodRunner raw(loose);
     const auto start = on.program.point(on.points.start(0).value());
     const nsma::Trial refused = raw.run(on, on.program.program, start);
@@ -186,14 +180,13 @@ TEST(Accuracy, RawAnswersAreJudgedByReplayNotByTheirStatus) {
 }
 
 TEST(Accuracy, StopsWhenToldAndRefusesAClosedGap) {
-    Records seen;
-    int left = 3;
-    EXPECT_FALSE(nsma::accuracy(unit_scene(1.0), {true}, seen, [&] { return left-- > 0; }));
+    nsma::AccuracyResults seen;
+    EXPECT_FALSE(quick_study(unit_scene(1.0), seen, 3));
     EXPECT_TRUE(seen.programs.empty());
-    EXPECT_THROW((void)nsma::accuracy(unit_scene(0.0), {true}, seen, [] { return true; }), std::invalid_argument);
+    EXPECT_THROW((void)quick_study(unit_scene(0.0), seen), std::invalid_argument);
     nsma::Scene extreme = unit_scene(1.0);
     extreme.objective = nsma::Objective::max_energy;
-    EXPECT_THROW((void)nsma::accuracy(extreme, {true}, seen, [] { return true; }), std::invalid_argument);
+    EXPECT_THROW((void)quick_study(extreme, seen), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,13 +1,12 @@
 #include "accuracy_folder.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <map>
 
 #include <Eigen/Core>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "numerics/linear_program.hpp"
@@ -23,12 +22,114 @@ namespace fs = std::filesystem;
 
 constexpr double rounding_error = 1e-14;  // two errors below it are the same
 
-std::string steps(const Pattern& pattern) {
+std::string field(int value) { return std::to_string(value); }
+std::string field(bool value) { return value ? "true" : "false"; }
+std::string field(double value) { return csv_number(value); }
+std::string field(std::string_view text) { return csv_text(text); }
+std::string field(const Pattern& pattern) {
     return fmt::format("{},{},{}", pattern.cells, pattern.free_steps, pattern.contact_steps);
 }
+std::string field(const Spread& spread) {
+    return fmt::format("{},{},{}", field(spread.median), field(spread.low), field(spread.high));
+}
+std::string field(const std::array<int, outcome_count>& outcomes) {
+    return fmt::format("{}", fmt::join(outcomes, ","));
+}
 
-std::string times(const Spread& spread) {
-    return fmt::format("{},{},{}", csv_number(spread.median), csv_number(spread.low), csv_number(spread.high));
+// One row of a table under the names of its columns.
+struct Row {
+    template <typename... Values>
+    explicit Row(std::string columns, const Values&... values)
+        : header(std::move(columns)), fields(fmt::format("{}", fmt::join({field(values)...}, ","))) {}
+
+    std::string header;
+    std::string fields;
+};
+
+const std::string pattern_columns = "cells,free_steps,contact_steps";
+const std::string seconds_columns = "seconds_median,seconds_quartile_1,seconds_quartile_3";
+
+Row row(const ProgramRecord& one) {
+    return Row(pattern_columns + ",kernel_dimension,method,setting,runs,reported,succeeded,certified,proved," +
+                   seconds_columns + ",iterations,worst_gap,worst_violation,error",
+               one.pattern, one.size, one.method, one.setting, one.runs, one.reported, one.succeeded(), one.certified,
+               one.proved, one.seconds, one.iterations, one.worst_gap, one.worst_violation, one.error);
+}
+
+Row row(const KernelRecord& one) {
+    return Row(pattern_columns + ",method," + seconds_columns + ",dimension,expected,error", one.pattern, one.method,
+               one.seconds, one.dimension, one.expected, one.error);
+}
+
+Row row(const MarchRecord& one) {
+    return Row("cells,method,setting,decides_contact,steps," + seconds_columns + ",tip_error,contact_error", one.cells,
+               one.method, one.setting, one.decides_contact, one.steps, one.seconds, one.tip_error, one.contact_error);
+}
+
+Row row(const DriftRecord& one) {
+    return Row("cells,method,setting,periods,energy_drift,periodicity_defect,seconds", one.cells, one.method,
+               one.setting, one.periods, one.energy_drift, one.periodicity_defect, one.seconds);
+}
+
+Row row(const StabilityRecord& one) {
+    std::string columns = "map," + pattern_columns +
+                          ",kernel_dimension,method,column,difficulty,above_least,below_greatest,runs,reported,"
+                          "false_success,certified,proved,iterations,seconds";
+    for (int k = 0; k < outcome_count; ++k) columns += fmt::format(",{}", name(static_cast<Outcome>(k)));
+    return Row(columns, one.map, one.pattern, one.size, one.method, one.column, one.difficulty, one.above_least,
+               one.below_greatest, one.runs, one.reported, one.false_success, one.certified, one.proved, one.iterations,
+               one.seconds, one.outcomes);
+}
+
+Row row(const ToleranceRecord& one) {
+    return Row(pattern_columns + ",method,tolerance,found,expected", one.pattern, one.method, one.tolerance, one.found,
+               one.expected);
+}
+
+Row row_of(const AccuracyRecord& record) {
+    return std::visit([](const auto& one) { return row(one); }, record);
+}
+
+std::string winners_table(const std::vector<ProgramRecord>& programs) {
+    std::string text = "kernel_dimension,front,rank,method,setting,seconds_median,error,succeeded,certified,runs\n";
+    std::vector<int> sizes;
+    for (const auto& one : programs) {
+        if (std::find(sizes.begin(), sizes.end(), one.size) == sizes.end()) sizes.push_back(one.size);
+    }
+    for (const int size : sizes) {
+        for (const bool certified : {false, true}) {
+            int rank = 0;
+            for (const ProgramRecord* one : pareto_front(programs, size, certified)) {
+                text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", size, certified ? "certified" : "any", ++rank,
+                                    field(one->method), field(one->setting), field(one->seconds.median),
+                                    field(one->error), one->succeeded(), one->certified, one->runs);
+            }
+        }
+    }
+    return text;
+}
+
+std::string causes_table(const std::vector<StabilityRecord>& cells) {
+    struct Counts {
+        std::array<int, outcome_count> outcomes{};
+        int runs = 0;
+    };
+    std::map<std::pair<std::string, std::string>, Counts> causes;  // by method and map
+    for (const auto& cell : cells) {
+        Counts& counts = causes[{cell.method, cell.map}];
+        counts.runs += cell.runs;
+        for (std::size_t k = 0; k < cell.outcomes.size(); ++k) counts.outcomes[k] += cell.outcomes[k];
+    }
+    std::string text = "method,map,cause,runs,of,what\n";
+    for (const auto& [key, counts] : causes) {
+        for (std::size_t k = 0; k < counts.outcomes.size(); ++k) {
+            if (counts.outcomes[k] == 0) continue;
+            const auto outcome = static_cast<Outcome>(k);
+            text += fmt::format("{},{},{},{},{},{}\n", field(key.first), key.second, name(outcome), counts.outcomes[k],
+                                counts.runs, field(description(outcome)));
+        }
+    }
+    return text;
 }
 
 std::string cpu_name() {
@@ -39,148 +140,62 @@ std::string cpu_name() {
     return "unknown";
 }
 
+// CPU, compiler, build options and library versions, one line each.
+std::string machine_text() {
+#ifdef NDEBUG
+    const char* build = "release (NDEBUG)";
+#else
+    const char* build = "debug (assertions on)";
+#endif
+    return fmt::format(
+        "cpu: {}\ncompiler: {}\nbuild: {}\nIpopt: {}\nNLopt: {}\nCLP: {}\nEigen: {}.{}.{}\ntimes: CPU seconds of one "
+        "thread",
+        one_line(cpu_name()),
+#ifdef __clang__
+        "clang " __clang_version__,
+#else
+        "g++ " __VERSION__,
+#endif
+        build, ipopt_version(), nlopt_version(), clp_version(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+        EIGEN_MINOR_VERSION);
+}
+
 }  // namespace
 
 AccuracyFolder::AccuracyFolder(const fs::path& folder, const Scene& scene) : folder_(folder) {
     prepare_results_folder(folder, scene, accuracy_files);
-    open(programs_, "programs.csv",
-         "cells,free_steps,contact_steps,kernel_dimension,method,setting,runs,reported,succeeded,certified,proved,"
-         "seconds_median,"
-         "seconds_quartile_1,seconds_quartile_3,iterations,worst_gap,worst_violation,error");
-    open(kernels_, "kernels.csv",
-         "cells,free_steps,contact_steps,method,seconds_median,seconds_quartile_1,seconds_quartile_3,dimension,"
-         "expected,error");
-    open(marching_, "marching.csv",
-         "cells,method,setting,decides_contact,steps,seconds_median,seconds_quartile_1,seconds_quartile_3,tip_error,"
-         "contact_error");
-    open(drift_, "drift.csv", "cells,method,setting,periods,energy_drift,periodicity_defect,seconds");
-    std::string outcomes;
-    for (int k = 0; k < outcome_count; ++k) outcomes += fmt::format(",{}", name(static_cast<Outcome>(k)));
-    open(stability_, "stability.csv",
-         ("map,cells,free_steps,contact_steps,kernel_dimension,method,column,difficulty,above_least,below_greatest,"
-          "runs,reported,"
-          "false_success,certified,proved,iterations,seconds" +
-          outcomes)
-             .c_str());
-    open(causes_, "causes.csv", "method,map,cause,runs,of,what");
-    open(tolerance_, "tolerance.csv", "cells,free_steps,contact_steps,method,tolerance,found,expected");
-    open(winners_, "winners.csv",
-         "kernel_dimension,front,rank,method,setting,seconds_median,error,succeeded,certified,runs");
-    open(machine_, "machine.txt", "");
+    for (const AccuracyRecord& empty : std::initializer_list<AccuracyRecord>{
+             ProgramRecord(), KernelRecord(), MarchRecord(), DriftRecord(), StabilityRecord(), ToleranceRecord()}) {
+        const fs::path part = part_of(folder / accuracy_files[empty.index()]);
+        tables_[empty.index()].reset(std::fopen(part.c_str(), "wb"));
+        if (!tables_[empty.index()]) fail_errno(part);
+        write(empty.index(), row_of(empty).header);
+    }
 }
 
-AccuracyFolder::~AccuracyFolder() = default;
-
-void AccuracyFolder::open(Table& table, const char* name, const char* header) {
-    table.path = (folder_ / name).string() + ".part";
-    errno = 0;
-    table.file.reset(std::fopen(table.path.c_str(), "wb"));
-    if (!table.file) fail(table.path, fmt::format("cannot be written: {}", std::strerror(errno)));
-    if (*header != '\0') write(table, header);
-}
-
-void AccuracyFolder::write(Table& table, const std::string& line) {
-    std::FILE* file = table.file.get();
-    errno = 0;
+void AccuracyFolder::write(std::size_t table, const std::string& line) {
+    std::FILE* file = tables_[table].get();
     if (std::fwrite(line.data(), 1, line.size(), file) != line.size() || std::fputc('\n', file) == EOF ||
         std::fflush(file) != 0) {
-        fail(table.path, fmt::format("cannot be written: {}", std::strerror(errno)));
+        fail_errno(part_of(folder_ / accuracy_files[table]));
     }
 }
 
-void AccuracyFolder::program(const ProgramRecord& record) {
-    results_.programs.push_back(record);
-    write(programs_,
-          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", steps(record.pattern), record.size,
-                      csv_text(record.method), csv_text(record.setting), record.runs, record.reported, record.succeeded,
-                      record.certified, record.proved, times(record.seconds), csv_number(record.iterations),
-                      csv_number(record.worst_gap), csv_number(record.worst_violation), csv_number(record.error)));
+void AccuracyFolder::add(const AccuracyRecord& record) {
+    results_.add(record);
+    write(record.index(), row_of(record).fields);
 }
-
-void AccuracyFolder::kernel(const KernelRecord& record) {
-    results_.kernels.push_back(record);
-    write(kernels_, fmt::format("{},{},{},{},{},{}", steps(record.pattern), csv_text(record.method),
-                                times(record.seconds), record.dimension, record.expected, csv_number(record.error)));
-}
-
-void AccuracyFolder::march(const MarchRecord& record) {
-    results_.marches.push_back(record);
-    write(marching_, fmt::format("{},{},{},{},{},{},{},{}", record.cells, csv_text(record.method),
-                                 csv_text(record.setting), record.decides_contact, record.steps, times(record.seconds),
-                                 csv_number(record.tip_error), csv_number(record.contact_error)));
-}
-
-void AccuracyFolder::drift(const DriftRecord& record) {
-    results_.drifts.push_back(record);
-    write(drift_, fmt::format("{},{},{},{},{},{},{}", record.cells, csv_text(record.method), csv_text(record.setting),
-                              record.periods, csv_number(record.energy_drift), csv_number(record.periodicity_defect),
-                              csv_number(record.seconds)));
-}
-
-void AccuracyFolder::stability(const StabilityRecord& record) {
-    results_.stability.push_back(record);
-    std::string outcomes;
-    for (const int count : record.outcomes) outcomes += fmt::format(",{}", count);
-    write(stability_, fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}{}", record.map, steps(record.pattern),
-                                  record.size, csv_text(record.method), record.column, csv_text(record.difficulty),
-                                  csv_number(record.above_least), csv_number(record.below_greatest), record.runs,
-                                  record.reported, record.false_success, record.certified, record.proved,
-                                  csv_number(record.iterations), csv_number(record.seconds), outcomes));
-}
-
-void AccuracyFolder::tolerance(const ToleranceRecord& record) {
-    results_.tolerances.push_back(record);
-    write(tolerance_, fmt::format("{},{},{},{},{}", steps(record.pattern), csv_text(record.method),
-                                  csv_number(record.tolerance), record.found, record.expected));
-}
-
-void AccuracyFolder::progress(long, long) {}
 
 void AccuracyFolder::finish() {
-    std::vector<int> sizes;
-    for (const auto& record : results_.programs) {
-        if (std::find(sizes.begin(), sizes.end(), record.size) == sizes.end()) sizes.push_back(record.size);
+    for (std::size_t table = 0; table < tables_.size(); ++table) {
+        const fs::path file = folder_ / accuracy_files[table];
+        if (fsync(fileno(tables_[table].get())) != 0 && errno != EINVAL) fail_errno(part_of(file));
+        tables_[table].reset();
+        put_in_place(file);
     }
-    for (const int size : sizes) {
-        for (const bool certified : {false, true}) {
-            int rank = 0;
-            for (const auto* record : pareto_front(results_.programs, size, certified)) {
-                write(winners_, fmt::format("{},{},{},{},{},{},{},{},{},{}", size, certified ? "certified" : "any",
-                                            ++rank, csv_text(record->method), csv_text(record->setting),
-                                            csv_number(record->seconds.median), csv_number(record->error),
-                                            record->succeeded, record->certified, record->runs));
-            }
-        }
-    }
-    // method, map -> outcome counts and runs
-    std::map<std::pair<std::string, std::string>, std::pair<std::array<int, outcome_count>, int>> causes;
-    for (const auto& record : results_.stability) {
-        auto& [counts, runs] = causes[{record.method, record.map}];
-        runs += record.runs;
-        for (std::size_t k = 0; k < counts.size(); ++k) counts[k] += record.outcomes[k];
-    }
-    for (const auto& [key, value] : causes) {
-        for (std::size_t k = 0; k < value.first.size(); ++k) {
-            if (value.first[k] == 0) continue;
-            const auto outcome = static_cast<Outcome>(k);
-            write(causes_, fmt::format("{},{},{},{},{},{}", csv_text(key.first), key.second, name(outcome),
-                                       value.first[k], value.second, csv_text(description(outcome))));
-        }
-    }
-    write(machine_, machine_text());
-    for (Table* table :
-         {&programs_, &kernels_, &marching_, &drift_, &stability_, &causes_, &tolerance_, &winners_, &machine_}) {
-        std::FILE* file = table->file.get();
-        errno = 0;
-        if (std::fflush(file) != 0 || (fsync(fileno(file)) != 0 && errno != EINVAL))
-            fail(table->path, fmt::format("cannot be written: {}", std::strerror(errno)));
-        table->file.reset();
-        fs::path final_name = table->path;
-        final_name.replace_extension();
-        std::error_code code;
-        fs::rename(table->path, final_name, code);
-        if (code) fail(final_name, fmt::format("cannot be written: {}", code.message()));
-    }
+    write_whole(folder_ / "causes.csv", causes_table(results_.stability));
+    write_whole(folder_ / "winners.csv", winners_table(results_.programs));
+    write_whole(folder_ / "machine.txt", machine_text() + "\n");
 }
 
 bool all_certified(const ProgramRecord& record) { return record.runs > 0 && record.certified == record.runs; }
@@ -200,25 +215,6 @@ std::vector<const ProgramRecord*> pareto_front(const std::vector<ProgramRecord>&
     std::stable_sort(front.begin(), front.end(),
                      [](const auto* a, const auto* b) { return a->seconds.median < b->seconds.median; });
     return front;
-}
-
-std::string machine_text() {
-#ifdef NDEBUG
-    const char* build = "release (NDEBUG)";
-#else
-    const char* build = "debug (assertions on)";
-#endif
-    return fmt::format(
-        "cpu: {}\ncompiler: {}\nbuild: {}\nIpopt: {}\nNLopt: {}\nCLP: {}\nEigen: {}.{}.{}\ntimes: CPU seconds of one "
-        "thread",
-        one_line(cpu_name()),
-#ifdef __clang__
-        "clang " __clang_version__,
-#else
-        "g++ " __VERSION__,
-#endif
-        build, ipopt_version(), nlopt_version(), clp_version(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-        EIGEN_MINOR_VERSION);
 }
 
 }  // namespace nsma

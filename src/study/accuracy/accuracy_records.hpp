@@ -3,54 +3,56 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
+#include "cpu_time.hpp"
 #include "nsma/orbit/pattern.hpp"
 
 namespace nsma {
 
-/// What one run of one method came to, judged by replay and by the proved best objective; the
-/// library's own word plays no part.
-enum class Outcome {
-    success,       ///< replayed within tolerance, objective within 1e-6 of the proved best
-    worse,         ///< replayed within tolerance, but a worse orbit: local optimum or early stop
-    off_level,     ///< replay refuses: the energy is not the level asked
-    outside,       ///< replay refuses: COND1, COND2 or COND3 violated
-    other_motion,  ///< replay refuses: the marcher sees other contact steps
-    not_finite,    ///< no point, or one with NaN
-    limit          ///< stopped by its limit of time or evaluations, and refused
-};
+/// What one run of one method came to, judged by replay and by the proved best objective; the library's own word plays
+/// no part.
+enum class Outcome { success, worse, off_level, outside, other_motion, not_finite, limit };
 inline constexpr int outcome_count = 7;
 [[nodiscard]] std::string_view name(Outcome outcome);         ///< "success", "worse", ...
 [[nodiscard]] std::string_view description(Outcome outcome);  ///< one line for the table of causes
 
-/// Median of repeated runs and their quartiles.
-struct Spread {
-    double median = 0;
-    double low = 0;   ///< first quartile
-    double high = 0;  ///< third quartile
-};
-/// Throws std::invalid_argument on no value.
-[[nodiscard]] Spread spread(std::vector<double> values);
-
-/// One method with one setting on the programs of one size. CPU seconds a run: the mean over
-/// levels and starts, of which the repeats have the spread.
-struct ProgramRecord {
+/// What the runs of one method with one setting came to.
+struct MethodRuns {
     Pattern pattern;
     int size = 0;  ///< m
     std::string method;
+    int runs = 0;
+    int reported = 0;       ///< the library claims success
+    int false_success = 0;  ///< reported, but not Outcome::success
+    int certified = 0;      ///< proved the best by the method's own bound
+    std::array<int, outcome_count> outcomes{};
+    bool proved = false;    ///< the best objective of every program is proved
+    double iterations = 0;  ///< median
+
+    [[nodiscard]] int succeeded() const { return outcomes[static_cast<std::size_t>(Outcome::success)]; }
+};
+
+/// On the programs of one size. CPU seconds a run: the mean over levels and starts, of which the repeats have the
+/// spread.
+struct ProgramRecord : MethodRuns {
     std::string setting;
     bool warm = false;  ///< started at the optimum of another level, whose cost is not counted
-    int runs = 0;
-    int reported = 0;     ///< the library claims success
-    int succeeded = 0;    ///< Outcome::success
-    int certified = 0;    ///< proved the best by the method's own bound
-    bool proved = false;  ///< the best objective of every program is proved
     Spread seconds;
-    double iterations = 0;       ///< median
     double worst_gap = 0;        ///< |objective - best|/best
     double worst_violation = 0;  ///< replayed
     double error = 0;            ///< worst over the runs of the larger of the two
+};
+
+/// In one cell of a stability map: on one kind of difficulty.
+struct StabilityRecord : MethodRuns {
+    std::string map;            ///< "level", "start", "units" or "rows"
+    int column = 0;             ///< place along the map's axis, 0-based
+    std::string difficulty;     ///< what is on that axis, e.g. "E_min (1 + 1e-8)"
+    double above_least = 0;     ///< (E - E_min)/E_min
+    double below_greatest = 0;  ///< (E_max - E)/E_max
+    double seconds = 0;         ///< median, CPU
 };
 
 /// One way to the kernel. CPU seconds.
@@ -86,26 +88,6 @@ struct DriftRecord {
     double seconds = 0;             ///< CPU
 };
 
-/// One cell of a stability map: one method on one kind of difficulty.
-struct StabilityRecord {
-    std::string map;  ///< "level", "start", "units" or "rows"
-    Pattern pattern;
-    int size = 0;
-    std::string method;
-    int column = 0;             ///< place along the map's axis, 0-based
-    std::string difficulty;     ///< what is on that axis, e.g. "E_min (1 + 1e-8)"
-    double above_least = 0;     ///< (E - E_min)/E_min
-    double below_greatest = 0;  ///< (E_max - E)/E_max
-    int runs = 0;
-    int reported = 0;
-    int false_success = 0;  ///< reported, but not Outcome::success
-    int certified = 0;      ///< proved the best by the method's own bound
-    std::array<int, outcome_count> outcomes{};
-    bool proved = false;
-    double iterations = 0;  ///< median
-    double seconds = 0;     ///< median, CPU
-};
-
 /// Dimension that a dense method finds at one tolerance.
 struct ToleranceRecord {
     Pattern pattern;
@@ -115,17 +97,19 @@ struct ToleranceRecord {
     int expected = 0;
 };
 
-/// Receives the records of the accuracy study as they come.
-class AccuracySink {
-public:
-    virtual ~AccuracySink() = default;
-    virtual void program(const ProgramRecord& record) = 0;
-    virtual void kernel(const KernelRecord& record) = 0;
-    virtual void march(const MarchRecord& record) = 0;
-    virtual void drift(const DriftRecord& record) = 0;
-    virtual void stability(const StabilityRecord& record) = 0;
-    virtual void tolerance(const ToleranceRecord& record) = 0;
-    virtual void progress(long done, long total) = 0;
+using AccuracyRecord =
+    std::variant<ProgramRecord, KernelRecord, MarchRecord, DriftRecord, StabilityRecord, ToleranceRecord>;
+
+/// Everything that one accuracy study found, in the order it was found.
+struct AccuracyResults {
+    std::vector<ProgramRecord> programs;
+    std::vector<KernelRecord> kernels;
+    std::vector<MarchRecord> marches;
+    std::vector<DriftRecord> drifts;
+    std::vector<StabilityRecord> stability;
+    std::vector<ToleranceRecord> tolerances;
+
+    void add(const AccuracyRecord& record);
 };
 
 }  // namespace nsma

@@ -107,10 +107,9 @@ void FiniteElementBar::factorise() {
     }
     Eigen::VectorXd unit = Eigen::VectorXd::Zero(n);
     unit[n - 1] = 1.0;
-    const double off = -factor;
     tip_response_ = unit;
     tip_response_[n - 1] /= pivot_[n - 1];
-    for (Eigen::Index i = n - 2; i >= 0; --i) tip_response_[i] = -off * tip_response_[i + 1] / pivot_[i];
+    for (Eigen::Index i = n - 2; i >= 0; --i) tip_response_[i] = factor * tip_response_[i + 1] / pivot_[i];
 }
 
 Eigen::VectorXd FiniteElementBar::solve(Eigen::VectorXd right) const {

@@ -52,6 +52,20 @@ Eigen::Index count_zero(const Eigen::VectorXd& values, double tolerance) {
     return (values.array() <= threshold).count();
 }
 
+// Singular values or pivots of S_T, decreasing, and orthonormal columns, of which those of zeros span the kernel.
+struct Factors {
+    Eigen::VectorXd values;
+    MatrixXd basis;
+};
+Factors factors(KernelMethod method, const MatrixXd& matrix) {
+    if (method == KernelMethod::rank_revealing_qr) {
+        PivotedQr qr = pivoted_qr(matrix.transpose());
+        return {std::move(qr.pivots), std::move(qr.q)};
+    }
+    Singular right = right_singular(matrix);
+    return {std::move(right.values), std::move(right.vectors)};
+}
+
 MatrixXd powers_basis(const MatrixXd& matrix, double tolerance) {
     const auto n = matrix.rows();
     MatrixXd projector = MatrixXd::Identity(n, n) + 0.5 * matrix;
@@ -61,7 +75,7 @@ MatrixXd powers_basis(const MatrixXd& matrix, double tolerance) {
         projector = squared;
         if (change <= tolerance) break;
     }
-    const auto rank = static_cast<Eigen::Index>(std::lround(projector.trace()));
+    const Eigen::Index rank = std::lround(projector.trace());
     return pivoted_qr(projector).q.leftCols(std::clamp<Eigen::Index>(rank, 0, n));
 }
 
@@ -85,26 +99,17 @@ MatrixXd kernel_space(KernelMethod method, const Bar& bar, const Pattern& patter
     }
     if (method == KernelMethod::exact_cycles) return cycles_basis(pattern);
     const MatrixXd matrix = periodicity(bar, pattern);
-    const auto n = matrix.rows();
     if (method == KernelMethod::matrix_powers) return powers_basis(matrix, tolerance);
-    if (method == KernelMethod::dense_svd) {
-        const Singular right = right_singular(matrix);
-        return right.vectors.rightCols(count_zero(right.values, tolerance));
-    }
-    const PivotedQr qr = pivoted_qr(matrix.transpose());
-    return qr.q.rightCols(count_zero(qr.pivots, tolerance));
+    const auto [values, basis] = factors(method, matrix);
+    return basis.rightCols(count_zero(values, tolerance));
 }
 
 Eigen::VectorXi dimensions_found(KernelMethod method, const Bar& bar, const Pattern& pattern,
                                  const Eigen::VectorXd& tolerances) {
-    Eigen::VectorXd values;
-    if (method == KernelMethod::dense_svd) {
-        values = right_singular(periodicity(bar, pattern)).values;
-    } else if (method == KernelMethod::rank_revealing_qr) {
-        values = pivoted_qr(periodicity(bar, pattern).transpose()).pivots;
-    } else {
+    if (method == KernelMethod::exact_cycles || method == KernelMethod::matrix_powers) {
         throw std::invalid_argument("method: expected an SVD or rank-revealing QR, got " + std::string(name(method)));
     }
+    const Eigen::VectorXd values = factors(method, periodicity(bar, pattern)).values;
     Eigen::VectorXi found(tolerances.size());
     for (Eigen::Index i = 0; i < tolerances.size(); ++i) {
         found[i] = static_cast<int>(count_zero(values, tolerances[i]));

@@ -7,17 +7,15 @@
 namespace nsma {
 namespace {
 
-// One matrix, or vector, above another.
-SparseRows stacked(const SparseRows& above, const Eigen::MatrixXd& below) {
-    Eigen::MatrixXd all(above.rows() + below.rows(), below.cols());
-    all << Eigen::MatrixXd(above), below;
-    return all.sparseView();
-}
-
-Eigen::VectorXd stacked(const Eigen::VectorXd& above, const Eigen::VectorXd& below) {
-    Eigen::VectorXd all(above.size() + below.size());
-    all << above, below;
-    return all;
+// Puts more rows below those of a constraint.
+void append(SparseRows& rows, Eigen::VectorXd& values, const Eigen::MatrixXd& more,
+            const Eigen::VectorXd& more_values) {
+    Eigen::MatrixXd all_rows(rows.rows() + more.rows(), more.cols());
+    all_rows << Eigen::MatrixXd(rows), more;
+    rows = all_rows.sparseView();
+    Eigen::VectorXd all_values(values.size() + more_values.size());
+    all_values << values, more_values;
+    values = all_values;
 }
 
 // COND2 once for each of the p contact steps and n = 0.
@@ -25,8 +23,8 @@ void repeat_contact(const ProgramCase& on, Program& program) {
     if (program.equalities.rows() == 0) return;
     const Eigen::MatrixXd row = Eigen::MatrixXd(program.equalities).topRows(1);
     const int times = on.problem.kernel.pattern.contact_steps;
-    program.equalities = stacked(program.equalities, row.replicate(times, 1));
-    program.equality_values = stacked(program.equality_values, program.equality_values.head(1).replicate(times, 1));
+    append(program.equalities, program.equality_values, row.replicate(times, 1),
+           program.equality_values.head(1).replicate(times, 1));
 }
 
 // COND3 at each contact step as a row -gamma_j <= 0 in place of the bound.
@@ -42,8 +40,7 @@ void force_rows(const ProgramCase& on, Program& program) {
     const auto count = static_cast<Eigen::Index>(columns.size());
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count, program.variables());
     for (Eigen::Index i = 0; i < count; ++i) rows(i, columns[static_cast<std::size_t>(i)]) = -1.0;
-    program.inequalities = stacked(program.inequalities, rows);
-    program.inequality_values = stacked(program.inequality_values, Eigen::VectorXd::Zero(count));
+    append(program.inequalities, program.inequality_values, rows, Eigen::VectorXd::Zero(count));
     program.lower.head(reduction.variables()).setConstant(-no_bound);
 }
 
@@ -63,8 +60,7 @@ void flight_rows(const ProgramCase& on, Program& program) {
         rows.row(n) /= norm;
         values[n] = reduction.gap_sign / (norm * on.program.scale);
     }
-    program.inequalities = stacked(program.inequalities, rows);
-    program.inequality_values = stacked(program.inequality_values, values);
+    append(program.inequalities, program.inequality_values, rows, values);
 }
 
 }  // namespace
@@ -88,19 +84,18 @@ std::vector<PosedProgram> scaled_programs(const Program& program, bool quick) {
 }
 
 std::vector<PosedProgram> redundant_programs(const ProgramCase& on) {
+    using Change = void (*)(const ProgramCase&, Program&);
+    static const std::vector<std::pair<const char*, std::vector<Change>>> variants{
+        {"presolved", {}},
+        {"COND2 repeated", {repeat_contact}},
+        {"COND3 as rows", {force_rows}},
+        {"all COND1 rows", {flight_rows}},
+        {"all of them", {repeat_contact, force_rows, flight_rows}}};
     std::vector<PosedProgram> posed;
-    const auto add = [&](const char* what, bool contact, bool force, bool flight) {
-        PosedProgram one{what, on.program.program};
-        if (contact) repeat_contact(on, one.program);
-        if (force) force_rows(on, one.program);
-        if (flight) flight_rows(on, one.program);
-        posed.push_back(std::move(one));
-    };
-    add("presolved", false, false, false);
-    add("COND2 repeated", true, false, false);
-    add("COND3 as rows", false, true, false);
-    add("all COND1 rows", false, false, true);
-    add("all of them", true, true, true);
+    for (const auto& [what, changes] : variants) {
+        posed.push_back({what, on.program.program});
+        for (const Change change : changes) change(on, posed.back().program);
+    }
     return posed;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,17 +19,21 @@ struct ProgramMethod {
         proof,    ///< OrbitSolver until an answer is proved, without a cross-check
         segment,  ///< the admissible point of a segment, polished; no solver
         ipopt,
-        nlopt
+        slsqp,
+        auglag_lbfgs,
+        auglag_slsqp,
+        cobyla,
+        isres
     };
     Kind kind = Kind::both;
-    NloptMethod nlopt = NloptMethod::slsqp;
-    std::string name;
     double tolerance = 1e-8;
-    bool polish = false;  ///< restore and polish the raw answer, and bound the objective
-    bool warm = false;    ///< start at the optimum of a level 2 % away
+    bool polish = true;  ///< restore and polish the raw answer, and bound the objective
+    bool warm = false;   ///< start at the optimum of a level 2 % away
 
     /// Brings its own start and poses the program itself.
     [[nodiscard]] bool whole() const { return kind == Kind::both || kind == Kind::proof; }
+    [[nodiscard]] bool derivative_free() const { return kind == Kind::cobyla || kind == Kind::isres; }
+    [[nodiscard]] std::string name() const;     ///< e.g. "Ipopt"
     [[nodiscard]] std::string setting() const;  ///< e.g. "tol 1e-08, polish"
 };
 
@@ -40,9 +44,6 @@ struct ProgramMethod {
 
 /// A program with its proved best objective.
 struct ProgramCase {
-    /// Solves for the reference. `problem` must be admissible and outlive this object.
-    ProgramCase(const Bar& bar, const PatternProblem& problem, Objective objective, double level);
-
     Bar bar;
     const PatternProblem& problem;
     Objective objective;
@@ -50,23 +51,25 @@ struct ProgramCase {
     Eigen::VectorXd reference;  ///< window of `nearest`: the least-energy orbit
     OrbitProgram program;
     LevelPoints points;
-    double best = 0;          ///< objective of the best orbit known, reported units
-    bool proved = false;      ///< ... and proved to be the best
-    Eigen::VectorXd best_x;   ///< its unknowns
-    double pose_seconds = 0;  ///< CPU, to pose the program and find a start: part of every run
-    Eigen::VectorXd warm_x;   ///< on this level, from the best orbit of a level 2 % away
-
-private:
-    [[nodiscard]] double posing_seconds() const;
+    double pose_seconds = 0;   ///< CPU, to pose the program and find a start: part of every run
+    double best = 0;           ///< objective of the best orbit known, reported units
+    bool proved = false;       ///< ... and proved to be the best
+    Eigen::VectorXd best_x{};  ///< its unknowns
 };
+
+/// Poses the program, times that, and solves it. `problem` must be admissible and outlive the case. Throws
+/// std::invalid_argument on a level that is not attainable.
+[[nodiscard]] ProgramCase solved_case(const Bar& bar, const PatternProblem& problem, Objective objective, double level);
+
+/// The point on the case's level that a segment from the best orbit of a level 2 % away reaches.
+[[nodiscard]] Eigen::VectorXd warm_start(const ProgramCase& on);
 
 /// One run, judged.
 struct Trial {
     Outcome outcome = Outcome::not_finite;
-    bool reported = false;  ///< the library claims success
-    std::string status;
-    double gap = 0;          ///< |objective - best|/best
-    double violation = 0;    ///< worst of the replay, relative
+    bool reported = false;   ///< the library claims success
+    double gap = 1;          ///< |objective - best|/best; 1 without an orbit
+    double violation = 1;    ///< worst of the replay, relative; 1 without an orbit
     bool certified = false;  ///< the method's own bound proves its answer the best
     double seconds = 0;      ///< CPU, with posing, polish, bound and replay
     int iterations = 0;
@@ -74,28 +77,27 @@ struct Trial {
     [[nodiscard]] double error() const { return gap > violation ? gap : violation; }
 };
 
+/// Pattern, proof and counts of the runs of a method on a case.
+[[nodiscard]] MethodRuns counted(const ProgramCase& on, const std::string& method, const std::vector<Trial>& trials);
+
 /// Runs one method; solver objects are kept between runs.
 class MethodRunner {
 public:
     explicit MethodRunner(const ProgramMethod& method, double time_limit = 5.0);
 
-    /// Poses `posed` (the case's program or a variant over the same unknowns) from `start`; the
-    /// default path and warm methods bring their own start. COBYLA and ISRES run in a child
-    /// process, since nothing else ends them for sure.
+    /// Poses `posed` (the case's program or a variant over the same unknowns) from `start`, which a whole method does
+    /// not use. COBYLA and ISRES run in a child process, since nothing else ends them for sure.
     [[nodiscard]] Trial run(const ProgramCase& on, const Program& posed, const Eigen::VectorXd& start);
 
-    [[nodiscard]] const ProgramMethod& method() const { return method_; }
-
 private:
-    [[nodiscard]] SolverOutcome call(const Program& posed, const Eigen::VectorXd& start);
+    [[nodiscard]] Trial run_whole(const ProgramCase& on);
+    [[nodiscard]] Trial run_posed(const ProgramCase& on, const Program& posed, const Eigen::VectorXd& start);
+    [[nodiscard]] SolverOutcome solve(const Program& posed, const Eigen::VectorXd& start);
 
     ProgramMethod method_;
     SolverOptions options_;
-    std::unique_ptr<OrbitSolver> orbit_solver_;
-    std::unique_ptr<IpoptSolver> ipopt_;
+    OrbitSolver orbit_solver_;
+    IpoptSolver ipopt_;
 };
-
-/// CPU time of this process [s].
-[[nodiscard]] double cpu_seconds();
 
 }  // namespace nsma
