@@ -3,21 +3,22 @@ set -eu
 
 usage() {
     cat <<'END'
-usage: sh tests/run.sh [release|debug|clang ...]
+usage: sh tests/run.sh [release|debug|clang|lint ...]
 
 Installs the packages that are missing (sudo only if not root), then configures, builds and tests each preset named;
-without a name release, then debug (address and undefined-behaviour sanitizers). It may be run again at any time.
+without a name release, then debug (address and undefined-behaviour sanitizers), then lint (tests/lint.sh: formatting,
+clang-tidy, reference pages). It may be run again at any time.
 END
 }
 
 for preset in "$@"; do
     case "$preset" in
-        release | debug | clang) ;;
+        release | debug | clang | lint) ;;
         -h | --help) usage; exit 0 ;;
         *) usage >&2; exit 2 ;;
     esac
 done
-[ $# -gt 0 ] || set -- release debug
+[ $# -gt 0 ] || set -- release debug lint
 
 top=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 cd "$top"
@@ -26,6 +27,10 @@ cd "$top"
 install_packages
 
 for preset in "$@"; do
+    if [ "$preset" = lint ]; then
+        sh tests/lint.sh
+        continue
+    fi
     say "building and testing the preset $preset"
     cmake --workflow --preset "$preset"
 done

@@ -1,0 +1,35 @@
+#!/bin/sh
+set -eu
+
+usage() {
+    cat <<'END'
+usage: sh tests/lint.sh
+
+Installs what is missing (sudo only if not root), then fails on a source that clang-format would change, on any finding of
+clang-tidy, and on any warning of Doxygen about the reference of the public headers (build/lint/reference/html).
+END
+}
+
+case "${1-}" in
+    '') ;;
+    -h | --help) usage; exit 0 ;;
+    *) usage >&2; exit 2 ;;
+esac
+
+top=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
+cd "$top"
+. problems/setup.sh
+packages="$packages clang-format clang-tidy doxygen"
+install_packages
+
+say "clang-format"
+find include src tests -name '*.[ch]pp' -exec clang-format --dry-run -Werror {} +
+
+say "clang-tidy"
+cmake --preset lint > /dev/null
+sed -n 's/.*"file": "\(.*\)".*/\1/p' build/lint/compile_commands.json |
+    xargs -P "$(nproc)" -n 1 clang-tidy -p build/lint --quiet --warnings-as-errors='*' \
+        --extra-arg=-Wno-unknown-warning-option
+
+say "doxygen"
+cmake --build --preset lint --target nsma_reference
