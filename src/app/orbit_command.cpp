@@ -3,7 +3,7 @@
 #include "command.hpp"
 
 #include "nsma/report/orbit_json.hpp"
-#include "report/sweep/tables.hpp"
+#include "report/record_values.hpp"
 
 namespace nsma::app {
 namespace {

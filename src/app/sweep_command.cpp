@@ -12,7 +12,7 @@
 #include "study/sweep/sweep_queue.hpp"
 #include "study/sweep/work_messages.hpp"
 #include "report/charts.hpp"
-#include "report/sweep/sweep_store.hpp"
+#include "report/sweep/sweep_export.hpp"
 #include "report/sweep/tables.hpp"
 
 namespace nsma::app {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/sweep/sweep_folder.hpp"
+#include "report/sweep/sweep_export.hpp"
 
 namespace nsma {
 

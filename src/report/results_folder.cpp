@@ -23,8 +23,6 @@ void fail(const fs::path& path, const std::string& what) {
     throw InputError(one_line(fmt::format("{}: {}", path.string(), what)));
 }
 
-void fail_errno(const fs::path& path) { fail(path, fmt::format("cannot be written: {}", std::strerror(errno))); }
-
 std::optional<std::string> contents(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return std::nullopt;
@@ -33,26 +31,34 @@ std::optional<std::string> contents(const fs::path& file) {
     return text.str();
 }
 
-fs::path part_of(const fs::path& file) { return file.string() + ".part"; }
-
-void put_in_place(const fs::path& file) {
-    std::error_code code;
-    fs::rename(part_of(file), file, code);
-    if (code) fail(file, fmt::format("cannot be written: {}", code.message()));
+PartFile::PartFile(fs::path file)
+    : file_(std::move(file)), part_(file_.string() + ".part"), stream_(std::fopen(part_.c_str(), "wb")) {
+    if (!stream_) fail_errno();
 }
 
-void write_whole(const fs::path& path, const std::string& text) {
-    const fs::path part = part_of(path);
-    std::FILE* file = std::fopen(part.c_str(), "wb");
-    if (file == nullptr) fail_errno(part);
-    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0 &&
-                         (fsync(fileno(file)) == 0 || errno == EINVAL);
-    const int code = errno;
-    if (std::fclose(file) != 0 || !written) {
-        if (!written) errno = code;
-        fail_errno(part);
-    }
-    put_in_place(path);
+void PartFile::fail_errno() const { fail(part_, fmt::format("cannot be written: {}", std::strerror(errno))); }
+
+void PartFile::write(std::string_view text) {
+    std::FILE* stream = stream_.get();
+    if (std::fwrite(text.data(), 1, text.size(), stream) != text.size() || std::fflush(stream) != 0) fail_errno();
+}
+
+void PartFile::close() {
+    if (fsync(fileno(stream_.get())) != 0 && errno != EINVAL) fail_errno();  // a pipe or a device has no disk
+    if (std::fclose(stream_.release()) != 0) fail_errno();
+}
+
+void PartFile::put_in_place() {
+    if (stream_) close();
+    std::error_code code;
+    fs::rename(part_, file_, code);
+    if (code) fail(file_, fmt::format("cannot be written: {}", code.message()));
+}
+
+void write_whole(const fs::path& file, std::string_view text) {
+    PartFile part(file);
+    part.write(text);
+    part.put_in_place();
 }
 
 namespace {

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "nsma/study/scene.hpp"
 
@@ -11,18 +14,33 @@ namespace nsma {
 
 /// Throws InputError "path: what", on one line.
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what);
-/// The same, "cannot be written" with the reason that errno holds.
-[[noreturn]] void fail_errno(const std::filesystem::path& path);
-
 /// The bytes of a file; absent where it cannot be opened, with the reason in errno.
 [[nodiscard]] std::optional<std::string> contents(const std::filesystem::path& file);
 
-/// The name of a file while it is being written.
-[[nodiscard]] std::filesystem::path part_of(const std::filesystem::path& file);
-/// Gives a written part its final name.
-void put_in_place(const std::filesystem::path& file);
+/// A file that is called NAME.part until it is whole. Throws InputError (one line) where it cannot be written.
+class PartFile {
+public:
+    explicit PartFile(std::filesystem::path file);
+
+    /// Appends text, at once for other processes to read.
+    void write(std::string_view text);
+    /// To the disk; nothing can be written any more.
+    void close();
+    /// Closes the file where it is open, and gives it its name.
+    void put_in_place();
+
+private:
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    [[noreturn]] void fail_errno() const;
+
+    std::filesystem::path file_, part_;
+    std::unique_ptr<std::FILE, Close> stream_;
+};
+
 /// Writes a file so that it is there whole or not at all.
-void write_whole(const std::filesystem::path& path, const std::string& text);
+void write_whole(const std::filesystem::path& file, std::string_view text);
 
 /// Makes the folder of a study and keeps a copy of its scene there. Throws InputError where it holds the results of
 /// another scene or, without a scene, one of `files`; std::invalid_argument on a scene without text.

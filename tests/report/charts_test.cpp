@@ -19,9 +19,7 @@ class ChartsTest : public sample::Folder {
 protected:
     void sweep(const std::string& text = sample::scene_text) {
         const Scene scene = parse_scene(text, "sample");
-        SweepFolder folder(path, scene);
-        sample::fill(folder, scene);
-        (void)folder.finish({});
+        sample::store(path, scene, sample::results_of(scene));
     }
     [[nodiscard]] std::string chart(const char* name) const { return sample::read(path / "charts" / name); }
 };
@@ -102,12 +100,10 @@ TEST_F(ChartsTest, SpaceTimePictureAgreesWithTheField) {
 
 TEST_F(ChartsTest, WithoutOrbitsOnlyTheDiagramIsDrawn) {
     const Scene scene = parse_scene(sample::scene_text, "sample");
-    SweepFolder folder(path, scene);
     PatternRecord record;
     record.pattern = {20, 3, 4};
     record.verdict = Verdict::inadmissible;
-    folder.pattern(record);
-    (void)folder.finish({});
+    sample::store(path, scene, {{0, -1, record, std::nullopt}});
     const DrawnCharts drawn = draw_charts(path);
     EXPECT_EQ(drawn.pictures.size(), 2U);
     EXPECT_EQ(drawn.skipped.size(), 2U);

@@ -10,6 +10,7 @@
 
 #include "nsma/orbit/backbone.hpp"
 #include "nsma/orbit/conditions.hpp"
+#include "report/sweep/sweep_export.hpp"
 #include "report/sweep/sweep_folder.hpp"
 
 namespace nsma::sample {
@@ -62,13 +63,46 @@ inline PatternRecord record_of(const OrbitAnswer& answer) {
     return record;
 }
 
-/// Sends every pattern of mode 1 with its least-energy orbit, as a sweep would.
-inline void fill(SweepFolder& folder, const Scene& scene) {
+/// Every pattern of mode 1 with its least-energy orbit, as a sweep would give them.
+inline std::vector<WorkResult> results_of(const Scene& scene) {
+    std::vector<WorkResult> results;
+    long number = 0;
     for (const Pattern& pattern : mode_patterns(1, scene.mesh.cells, scene.bar.gap_sign())) {
         const OrbitAnswer answer = least_energy_answer(scene.bar, pattern);
-        folder.pattern(record_of(answer));
-        folder.answer(answer);
+        results.push_back({number, -1, record_of(answer), std::nullopt});
+        results.push_back({number, 0, std::nullopt, answer});
+        ++number;
     }
+    return results;
+}
+
+/// A folder with the store of these results.
+inline void store(const std::filesystem::path& folder, const Scene& scene, const std::vector<WorkResult>& results) {
+    SweepStore store(folder, scene, {"nsma 1", "solver both"}, SweepStore::Mode::fresh);
+    store.put(results);
+    store.finish();
+}
+
+/// The fields of one CSV line.
+inline std::vector<std::string> csv_fields(std::string_view line) {
+    std::vector<std::string> fields(1);
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char letter = line[i];
+        if (letter == '"') {
+            if (quoted && i + 1 < line.size() && line[i + 1] == '"') {
+                fields.back() += '"';
+                ++i;
+            } else {
+                quoted = !quoted;
+            }
+        } else if (letter == ',' && !quoted) {
+            fields.emplace_back();
+        } else {
+            fields.back() += letter;
+        }
+    }
+    return fields;
 }
 
 inline std::string read(const std::filesystem::path& file) {

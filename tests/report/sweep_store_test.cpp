@@ -2,6 +2,7 @@
 
 #include <csignal>
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
@@ -34,6 +35,17 @@ list = [0.5, 1.6, 12.0]
 [program]
 objective = "nearest"
 )";
+
+/// Writes tables without a store between.
+class TableSink : public SweepSink {
+public:
+    TableSink(const std::filesystem::path& path, const Scene& scene) : folder(path, scene) {}
+    void pattern(const PatternRecord& record) override { folder.pattern(record); }
+    void answer(const OrbitAnswer& answer) override { folder.answer(answer); }
+    void progress(long, long) override {}
+
+    SweepFolder folder;
+};
 
 class SweepStoreTest : public sample::Folder {
 protected:
@@ -76,8 +88,8 @@ TEST_F(SweepStoreTest, TablesAreThoseOfASweepWithoutAStore) {
     EXPECT_THAT(whole(path / "store"), HasSubstr("results are in"));
     EXPECT_TRUE(std::filesystem::exists(path / "store" / "results.sqlite"));
     EXPECT_FALSE(std::filesystem::exists(path / "store" / "results.sqlite.part"));
-    SweepFolder direct(path / "direct", scene);
-    (void)direct.finish(sweep(scene, {}, direct, [] { return true; }));
+    TableSink direct(path / "direct", scene);
+    direct.folder.finish(sweep(scene, {}, direct, [] { return true; }));
     expect_same_tables(path / "store", path / "direct");
     EXPECT_THAT(sample::read(path / "store" / "summary.json"), HasSubstr("\"seconds\": 1.5"));
 }
@@ -221,6 +233,49 @@ TEST_F(SweepStoreTest, ReadsBackForCharts) {
     EXPECT_EQ(stored.patterns.size(), 4U);
     EXPECT_EQ(stored.levels.size() % 4, 0U);
     EXPECT_FALSE(stored.orbits.empty());
+}
+
+TEST_F(SweepStoreTest, ReadsBackWhatWasWritten) {
+    const Scene mode = parse_scene(sample::scene_text, "sample");
+    sample::store(path / "out", mode, sample::results_of(mode));
+    const StoredSweep stored = read_sweep_folder(path / "out");
+    EXPECT_EQ(stored.scene.title, "A sample");
+    ASSERT_EQ(stored.patterns.size(), 19U);
+    ASSERT_EQ(stored.levels.size(), 19U);
+    ASSERT_EQ(stored.orbits.size(), 19U);
+    for (std::size_t i = 0; i < stored.orbits.size(); ++i) {
+        const OrbitAnswer answer = sample::least_energy_answer(mode.bar, stored.patterns[i].pattern);
+        EXPECT_EQ(stored.patterns[i].interval.least, answer.interval.least);
+        EXPECT_EQ(stored.patterns[i].verdict, Verdict::admissible);
+        EXPECT_EQ(stored.levels[i].energy, answer.energy);
+        EXPECT_FALSE(stored.levels[i].level.has_value());
+        EXPECT_EQ(stored.orbits[i].orbit.beta, answer.orbit->beta);
+    }
+}
+
+TEST_F(SweepStoreTest, AnInterruptedSweepLeavesWhatItHas) {
+    SweepStore store(path, scene, versions, Mode::fresh);
+    EXPECT_FALSE(work(store, 3));
+    for (int time = 0; time < 2; ++time)
+        EXPECT_THAT(export_sweep(store, path).line, HasSubstr("partial results are in"));
+    EXPECT_THAT(sample::read(path / "summary.txt"), HasSubstr("interrupted"));
+}
+
+TEST_F(SweepStoreTest, DamagedFoldersAreNamed) {
+    const auto message = [&](const char* name) { return error_of([&] { (void)read_sweep_folder(path / name); }); };
+    EXPECT_THAT(message("nothing"), HasSubstr("got nothing"));
+    sample::write(path / "file", "text");
+    EXPECT_THAT(message("file"), HasSubstr("got a file"));
+    std::filesystem::create_directory(path / "empty");
+    EXPECT_THAT(message("empty"), HasSubstr("without results.sqlite"));
+    (void)whole(path / "damaged");
+    SQLite::Database(path / "damaged" / "results.sqlite", SQLite::OPEN_READWRITE)
+        .exec("UPDATE orbits SET beta = '[1, x]'");
+    EXPECT_THAT(message("damaged"), HasSubstr("results.sqlite: cannot be read: beta: "));
+    EXPECT_EQ(message("damaged").find('\n'), std::string::npos);
+    SQLite::Database(path / "damaged" / "results.sqlite", SQLite::OPEN_READWRITE)
+        .exec("UPDATE patterns SET verdict = 'splendid'");
+    EXPECT_THAT(message("damaged"), HasSubstr("verdict: expected a value of its kind"));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "nsma/search/answer.hpp"
 
@@ -48,17 +48,6 @@ struct SweepSummary {
     double worst_violation = 0;  ///< worst replayed relative violation of the kept orbits
     double seconds = 0;
     bool interrupted = false;
-};
-
-/// Receives the records of a study as they come.
-class SweepSink {
-public:
-    virtual ~SweepSink() = default;
-    virtual void pattern(const PatternRecord& record) = 0;
-    /// The least-energy orbit of an admissible pattern (level absent), then one answer a level.
-    virtual void answer(const OrbitAnswer& answer) = 0;
-    /// Work done so far out of all; total may shrink or grow while a sweep runs.
-    virtual void progress(long done, long total) = 0;
 };
 
 }  // namespace nsma

@@ -1,32 +1,16 @@
 #include "sweep_folder.hpp"
 
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "tables.hpp"
 #include "nsma/report/orbit_json.hpp"
 #include "report/one_line.hpp"
-#include "report/results_folder.hpp"
 
 namespace nsma {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Whether the folder holds a whole, uninterrupted sweep.
-bool complete(const fs::path& folder) {
-    for (const char* file : sweep_files) {
-        if (!fs::is_regular_file(folder / file)) return false;
-    }
-    const auto text = contents(folder / "summary.json");
-    const auto json = nlohmann::json::parse(text.value_or(""), nullptr, false);
-    return json.is_object() && json.value("interrupted", true) == false;
-}
 
 std::string summary_json(const SweepSummary& summary) {
     nlohmann::ordered_json json;
@@ -53,11 +37,7 @@ std::string summary_json(const SweepSummary& summary) {
     json["disagreed"] = summary.disagreed;
     json["one_failed"] = summary.one_failed;
     json["failed"] = summary.failed;
-    if (std::isfinite(summary.worst_violation)) {
-        json["worst_violation"] = summary.worst_violation;
-    } else {
-        json["worst_violation"] = nullptr;
-    }
+    json["worst_violation"] = summary.worst_violation;  // NaN and infinity become null
     json["seconds"] = summary.seconds;
     json["interrupted"] = summary.interrupted;
     return json.dump(2);
@@ -72,82 +52,47 @@ constexpr const char* csv_notes =
 
 }  // namespace
 
-void prepare_sweep_folder(const fs::path& folder, const Scene& scene) {
+fs::path prepare_sweep_folder(const fs::path& folder, const Scene& scene) {
     prepare_results_folder(folder, scene, sweep_files);
+    return folder;
 }
 
-SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene) : folder_(folder), bar_(scene.bar) {
-    prepare_sweep_folder(folder, scene);
-    patterns_ = open("patterns.csv");
-    levels_ = open("levels.csv");
-    orbits_ = open("orbits.jsonl");
-    timings_ = open("timings.csv");
+SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)
+    : folder_(prepare_sweep_folder(folder, scene)),
+      bar_(scene.bar),
+      patterns_(folder_ / "patterns.csv"),
+      levels_(folder_ / "levels.csv"),
+      orbits_(folder_ / "orbits.jsonl"),
+      timings_(folder_ / "timings.csv") {
     const std::string title = "# nsma sweep: " + one_line(scene.title);
-    write(patterns_, fmt::format("{}: patterns\n{}\n{}", title, csv_notes, patterns_csv_header()));
-    write(levels_, fmt::format("{}: energy levels\n{}\n# level is in units of E_g, in joules for a closed gap; "
-                               "empty in the row of a pattern's least-energy orbit.\n{}",
-                               title, csv_notes, levels_csv_header()));
-    write(timings_, fmt::format("{}: wall times [s]\n{}", title, timings_csv_header()));
-}
-
-SweepFolder::~SweepFolder() = default;
-
-SweepFolder::Output SweepFolder::open(const char* name) {
-    Output output{part_of(folder_ / name), nullptr};
-    output.file.reset(std::fopen(output.path.c_str(), "wb"));
-    if (!output.file) fail_errno(output.path);
-    return output;
-}
-
-void SweepFolder::write(Output& output, const std::string& line) {
-    std::FILE* file = output.file.get();
-    if (std::fwrite(line.data(), 1, line.size(), file) != line.size() || std::fputc('\n', file) == EOF ||
-        std::fflush(file) != 0) {
-        fail_errno(output.path);
-    }
-}
-
-void SweepFolder::close(Output& output) {
-    std::FILE* file = output.file.get();
-    if (std::fflush(file) != 0 || (fsync(fileno(file)) != 0 && errno != EINVAL)) fail_errno(output.path);
-    if (std::fclose(output.file.release()) != 0) fail_errno(output.path);
+    patterns_.write(fmt::format("{}: patterns\n{}\n{}\n", title, csv_notes, patterns_csv_header()));
+    levels_.write(
+        fmt::format("{}: energy levels\n{}\n# level is in units of E_g, in joules for a closed gap; "
+                    "empty in the row of a pattern's least-energy orbit.\n{}\n",
+                    title, csv_notes, levels_csv_header()));
+    timings_.write(fmt::format("{}: wall times [s]\n{}\n", title, timings_csv_header()));
 }
 
 void SweepFolder::pattern(const PatternRecord& record) {
-    write(patterns_, patterns_csv_row(bar_, record));
-    for (const std::string& row : timings_csv_rows(record)) write(timings_, row);
+    patterns_.write(patterns_csv_row(bar_, record) + "\n");
+    for (const std::string& row : timings_csv_rows(record)) timings_.write(row + "\n");
 }
-
-void SweepFolder::answer(const OrbitAnswer& answer) { this->answer(answer, false); }
 
 void SweepFolder::answer(const OrbitAnswer& answer, bool only_times) {
     if (!only_times) {
-        write(levels_, levels_csv_row(bar_, answer));
-        if (answer.orbit) write(orbits_, orbit_json(answer, bar_, false, -1));
+        levels_.write(levels_csv_row(bar_, answer) + "\n");
+        if (answer.orbit) orbits_.write(orbit_json(answer, bar_, false, -1) + "\n");
     }
-    for (const std::string& row : timings_csv_rows(answer)) write(timings_, row);
+    for (const std::string& row : timings_csv_rows(answer)) timings_.write(row + "\n");
 }
 
-void SweepFolder::progress(long, long) {}
-
-std::string SweepFolder::finish(const SweepSummary& summary) {
-    for (Output* output : {&patterns_, &levels_, &orbits_, &timings_}) close(*output);
-    std::string table = summary_table(summary);
-    table.pop_back();
-    for (const auto& [file, text] :
-         {std::pair{"summary.txt", table}, std::pair{"summary.json", summary_json(summary)}}) {
-        Output output = open(file);
-        write(output, text);
-        close(output);
-    }
-    if (summary.interrupted && complete(folder_)) {
-        return fmt::format(
-            "interrupted: {} keeps its complete results; the rows done now are beside them as "
-            ".part files",
-            folder_.string());
-    }
-    for (const char* file : sweep_files) put_in_place(folder_ / file);
-    return fmt::format("{}results are in {}", summary.interrupted ? "interrupted: partial " : "", folder_.string());
+void SweepFolder::finish(const SweepSummary& summary) {
+    PartFile text(folder_ / "summary.txt"), json(folder_ / "summary.json");
+    text.write(summary_table(summary));
+    json.write(summary_json(summary) + "\n");
+    const std::array files{&patterns_, &levels_, &orbits_, &timings_, &text, &json};
+    for (PartFile* file : files) file->close();
+    for (PartFile* file : files) file->put_in_place();
 }
 
 }  // namespace nsma

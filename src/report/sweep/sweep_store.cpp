@@ -1,22 +1,17 @@
 #include "sweep_store.hpp"
 
-#include <algorithm>
-#include <array>
-#include <charconv>
 #include <chrono>
-#include <iterator>
+#include <cstdlib>
 #include <optional>
-#include <set>
 #include <thread>
-#include <utility>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "store_tables.hpp"
 #include "sweep_folder.hpp"
-#include "study/sweep/record_rows.hpp"
 #include "nsma/report/scene_file.hpp"
-#include "report/results_folder.hpp"
 
 namespace nsma {
 namespace {
@@ -37,85 +32,6 @@ std::string hash_of(const std::string& text) {
     return fmt::format("{:016x}", hash);
 }
 
-// A JSON list of the shortest decimals that read back to the same doubles.
-std::string list_of(const std::vector<double>& values) {
-    std::string text = "[";
-    for (const double value : values) {
-        if (text.size() > 1) text += ',';
-        fmt::format_to(std::back_inserter(text), "{}", value);
-    }
-    return text + ']';
-}
-
-std::vector<double> numbers_in(const std::string& text) {
-    std::vector<double> values;
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    while (at != end) {
-        ++at;  // '[', ',' or ']'
-        if (at == end) break;
-        double value = 0;
-        const auto [next, code] = std::from_chars(at, end, value);
-        if (code != std::errc()) throw std::invalid_argument("beta: expected a list of numbers");
-        values.push_back(value);
-        at = next;
-    }
-    return values;
-}
-
-std::string columns_sql(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += ", " + name;
-    return text;
-}
-
-std::string insert_sql(const std::string& table, const std::string& keys, const std::vector<std::string>& names) {
-    std::string marks = "?";
-    for (std::size_t i = 0; i < static_cast<std::size_t>(std::count(keys.begin(), keys.end(), ',')) + names.size();
-         ++i) {
-        marks += ",?";
-    }
-    return fmt::format("INSERT OR IGNORE INTO {} ({}{}) VALUES ({})", table, keys, columns_sql(names), marks);
-}
-
-void bind(SQLite::Statement& statement, int from, const Row& row) {
-    for (const Value& value : row) {
-        if (const auto* whole = std::get_if<std::int64_t>(&value)) {
-            statement.bind(from, *whole);
-        } else if (const auto* real = std::get_if<double>(&value)) {
-            statement.bind(from, *real);
-        } else if (const auto* text = std::get_if<std::string>(&value)) {
-            statement.bind(from, *text);
-        } else {
-            statement.bind(from);
-        }
-        ++from;
-    }
-}
-
-Row row_of(SQLite::Statement& statement, int from) {
-    Row row;
-    for (int i = from; i < statement.getColumnCount(); ++i) {
-        const SQLite::Column column = statement.getColumn(i);
-        if (column.isInteger()) {
-            row.emplace_back(column.getInt64());
-        } else if (column.isFloat()) {
-            row.emplace_back(column.getDouble());
-        } else if (column.isText()) {
-            row.emplace_back(column.getString());
-        } else {
-            row.emplace_back();
-        }
-    }
-    return row;
-}
-
-const char* const view_sql =
-    "CREATE VIEW timings AS"
-    " SELECT number, NULL AS place, 'pattern' AS what, NULL AS run, seconds FROM patterns"
-    " UNION ALL SELECT pattern, place, 'answer', NULL, seconds FROM answers"
-    " UNION ALL SELECT pattern, place, solver, run, seconds FROM solves";
-
 }  // namespace
 
 struct SweepStore::Implementation {
@@ -123,7 +39,10 @@ struct SweepStore::Implementation {
     fs::path file;
     Scene scene;
     std::unique_ptr<SQLite::Database> database;
-    std::optional<SQLite::Statement> add_pattern, add_answer, add_run, add_orbit, begin, commit, rollback;
+    struct Inserts {
+        StoreStatement pattern, answer, run, orbit;
+    };
+    std::optional<Inserts> inserts;
 
     // Every call into SQLite: its errors become one line that names the file.
     template <class Call>
@@ -135,6 +54,8 @@ struct SweepStore::Implementation {
             fail(file, fmt::format("cannot be {}: {}", doing, error.getErrorStr()));
         } catch (const std::invalid_argument& error) {
             fail(file, fmt::format("cannot be {}: {}", doing, error.what()));
+        } catch (const nlohmann::json::exception& error) {
+            fail(file, fmt::format("cannot be {}: beta: {}", doing, error.what()));
         }
     }
 
@@ -173,12 +94,6 @@ struct SweepStore::Implementation {
         return error.getErrorCode() == 5 || error.getErrorCode() == 6;  // SQLITE_BUSY, SQLITE_LOCKED
     }
 
-    void close() {
-        for (auto* statement : {&add_pattern, &add_answer, &add_run, &add_orbit, &begin, &commit, &rollback})
-            statement->reset();
-        database.reset();
-    }
-
     [[nodiscard]] std::string info(const char* key) const {
         return guarded("read", [&] {
             SQLite::Statement query(*database, "SELECT value FROM sweep WHERE key = ?");
@@ -204,22 +119,13 @@ struct SweepStore::Implementation {
         guarded("written", [&] {
             SQLite::Transaction transaction(*database);
             database->exec("DROP VIEW IF EXISTS timings");
-            for (const char* table : {"orbits", "solves", "answers", "patterns", "sweep"}) {
-                database->exec(fmt::format("DROP TABLE IF EXISTS {}", table));
+            database->exec("DROP TABLE IF EXISTS sweep");
+            for (const StoreTable& table : store_tables()) {
+                database->exec(fmt::format("DROP TABLE IF EXISTS {}", table.name));
             }
             database->exec("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID");
-            database->exec(
-                fmt::format("CREATE TABLE patterns (number INTEGER PRIMARY KEY{})", columns_sql(pattern_columns())));
-            database->exec(
-                fmt::format("CREATE TABLE answers (pattern INTEGER, place INTEGER{}, PRIMARY KEY (pattern, place))",
-                            columns_sql(answer_columns())));
-            database->exec(
-                fmt::format("CREATE TABLE solves (pattern INTEGER, place INTEGER, run INTEGER{}, PRIMARY KEY (pattern, "
-                            "place, run))",
-                            columns_sql(run_columns())));
-            database->exec(
-                "CREATE TABLE orbits (pattern INTEGER, place INTEGER, beta TEXT, PRIMARY KEY (pattern, place))");
-            database->exec(view_sql);
+            for (const StoreTable& table : store_tables()) database->exec(table.create_sql());
+            database->exec(timings_view_sql);
             for (const auto& [key, value] : {std::pair<const char*, std::string>{"format", format},
                                              {"scene", scene.text},
                                              {"scene_hash", hash_of(scene.text)},
@@ -252,40 +158,22 @@ struct SweepStore::Implementation {
 
     void prepare() {
         guarded("opened", [&] {
-            add_pattern.emplace(*database, insert_sql("patterns", "number", pattern_columns()));
-            add_answer.emplace(*database, insert_sql("answers", "pattern, place", answer_columns()));
-            add_run.emplace(*database, insert_sql("solves", "pattern, place, run", run_columns()));
-            add_orbit.emplace(*database, insert_sql("orbits", "pattern, place, beta", {}));
-            begin.emplace(*database, "BEGIN");
-            commit.emplace(*database, "COMMIT");
-            rollback.emplace(*database, "ROLLBACK");
+            const auto& [patterns, answers, solves, orbits] = store_tables();
+            inserts.emplace(Inserts{{*database, patterns.insert_sql()},
+                                    {*database, answers.insert_sql()},
+                                    {*database, solves.insert_sql()},
+                                    {*database, orbits.insert_sql()}});
         });
     }
 
-    static void run(std::optional<SQLite::Statement>& statement) {
-        statement->exec();
-        statement->reset();
-    }
-
-    void add(std::optional<SQLite::Statement>& statement, const WorkResult& result, int keys, int number,
-             const Row& row) {
-        statement->bind(1, static_cast<std::int64_t>(result.pattern));
-        if (keys > 1) statement->bind(2, result.place);
-        if (keys > 2) statement->bind(3, number);
-        bind(*statement, keys + 1, row);
-        run(statement);
-    }
-
-    void put(const WorkResult& result) {
-        const ResultRows rows = rows_of(result);
-        if (result.place < 0) {
-            add(add_pattern, result, 1, 0, rows.pattern);
-            return;
+    void put(const ResultRows& rows) {
+        if (rows.place < 0) return inserts->pattern.insert({rows.pattern}, rows.record);
+        inserts->answer.insert({rows.pattern, rows.place}, rows.record);
+        for (std::size_t run = 0; run < rows.runs.size(); ++run) {
+            inserts->run.insert({rows.pattern, rows.place, static_cast<int>(run)}, rows.runs[run]);
         }
-        add(add_answer, result, 2, 0, rows.answer);
-        int number = 0;
-        for (const Row& row : rows.runs) add(add_run, result, 3, number++, row);
-        if (!rows.beta.empty()) add(add_orbit, result, 2, 0, {Value(list_of(rows.beta))});
+        if (rows.beta.empty()) return;
+        inserts->orbit.insert({rows.pattern, rows.place}, {nlohmann::json(rows.beta).dump()});
     }
 };
 
@@ -334,159 +222,67 @@ const Scene& SweepStore::scene() const { return implementation_->scene; }
 
 bool SweepStore::complete() const { return implementation_->info("complete") == "1"; }
 
-double SweepStore::seconds() const {
-    const auto numbers = numbers_in(fmt::format("[{}]", implementation_->info("seconds")));
-    return numbers.empty() ? 0.0 : numbers.front();
-}
+double SweepStore::seconds() const { return std::strtod(implementation_->info("seconds").c_str(), nullptr); }
 
 void SweepStore::add_seconds(double more) { implementation_->set_info("seconds", fmt::format("{}", seconds() + more)); }
 
 void SweepStore::put(const std::vector<WorkResult>& results) {
     auto& self = *implementation_;
     self.guarded("written", [&] {
-        Implementation::run(self.begin);
-        try {
-            for (const WorkResult& result : results) self.put(result);
-            Implementation::run(self.commit);
-        } catch (...) {
-            // What was committed before stays valid; a journal cut short is ignored when read.
-            try {
-                Implementation::run(self.rollback);
-            } catch (const SQLite::Exception&) {  // SQLite has rolled back by itself
-            }
-            throw;
-        }
+        // Without its commit it is rolled back; what was committed before stays valid.
+        SQLite::Transaction transaction(*self.database);
+        for (const WorkResult& result : results) self.put(rows_of(result));
+        transaction.commit();
     });
 }
 
 void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
     const auto& self = *implementation_;
     SQLite::Database& database = *self.database;
-    std::optional<SQLite::Statement> patterns, answers, runs, orbit;
+    const Bar& bar = self.scene.bar;
     self.guarded("read", [&] {
-        patterns.emplace(database,
-                         fmt::format("SELECT number{} FROM patterns ORDER BY number", columns_sql(pattern_columns())));
-        answers.emplace(database, fmt::format("SELECT place{} FROM answers WHERE pattern = ? ORDER BY place",
-                                              columns_sql(answer_columns())));
-        runs.emplace(database, fmt::format("SELECT run{} FROM solves WHERE pattern = ? AND place = ? ORDER BY run",
-                                           columns_sql(run_columns())));
-        orbit.emplace(database, "SELECT beta FROM orbits WHERE pattern = ? AND place = ?");
+        StoreStatement patterns(database, "SELECT * FROM patterns ORDER BY number");
+        StoreStatement answers(database, "SELECT * FROM answers WHERE pattern = ? ORDER BY place");
+        StoreStatement runs(database, "SELECT * FROM solves WHERE pattern = ? AND place = ? ORDER BY run");
+        StoreStatement orbit(database, "SELECT * FROM orbits WHERE pattern = ? AND place = ?");
+        while (patterns.step()) {
+            const long pattern = patterns.integer(0);
+            visit(result_of({pattern, -1, patterns.row(1), {}, {}}, bar));
+            answers.select({pattern});
+            while (answers.step()) {
+                ResultRows rows{pattern, static_cast<int>(answers.integer(1)), answers.row(2), {}, {}};
+                runs.select({pattern, rows.place});
+                while (runs.step()) rows.runs.push_back(runs.row(3));
+                orbit.select({pattern, rows.place});
+                if (orbit.step()) rows.beta = nlohmann::json::parse(orbit.text(2)).get<std::vector<double>>();
+                visit(result_of(rows, bar));
+            }
+        }
     });
-    // One result at a time; `visit` may throw what it likes.
-    const auto next_pattern = [&]() -> std::optional<WorkResult> {
-        return self.guarded("read", [&]() -> std::optional<WorkResult> {
-            if (!patterns->executeStep()) return std::nullopt;
-            return WorkResult{static_cast<long>(patterns->getColumn(0).getInt64()), -1,
-                              pattern_record_of(row_of(*patterns, 1)), std::nullopt};
-        });
-    };
-    const auto next_answer = [&](long pattern) -> std::optional<WorkResult> {
-        return self.guarded("read", [&]() -> std::optional<WorkResult> {
-            if (!answers->executeStep()) return std::nullopt;
-            const int place = answers->getColumn(0).getInt();
-            ResultRows rows;
-            rows.answer = row_of(*answers, 1);
-            runs->reset();
-            runs->bind(1, static_cast<std::int64_t>(pattern));
-            runs->bind(2, place);
-            while (runs->executeStep()) rows.runs.push_back(row_of(*runs, 1));
-            orbit->reset();
-            orbit->bind(1, static_cast<std::int64_t>(pattern));
-            orbit->bind(2, place);
-            if (orbit->executeStep()) rows.beta = numbers_in(orbit->getColumn(0).getString());
-            return WorkResult{pattern, place, std::nullopt, orbit_answer_of(rows, self.scene.bar)};
-        });
-    };
-    while (auto record = next_pattern()) {
-        const long pattern = record->pattern;
-        visit(std::move(*record));
-        self.guarded("read", [&] {
-            answers->reset();
-            answers->bind(1, static_cast<std::int64_t>(pattern));
-        });
-        while (auto answer = next_answer(pattern)) visit(std::move(*answer));
-    }
 }
 
 void SweepStore::finish() {
     auto& self = *implementation_;
     if (self.file.filename() != part_name) return;
     self.set_info("complete", "1");
-    for (auto* statement : {&self.add_pattern, &self.add_answer, &self.add_run, &self.add_orbit, &self.begin,
-                            &self.commit, &self.rollback}) {
-        statement->reset();
-    }
+    self.inserts.reset();
     self.guarded("written", [&] {
         // Everything into the one file, which is then whole by itself.
         self.database->exec("PRAGMA synchronous=FULL");
         self.database->exec("PRAGMA journal_mode=DELETE");
     });
-    self.close();
+    self.database.reset();
     std::error_code code;
     fs::rename(self.file, self.folder / final_name, code);
     if (code) fail(self.folder / final_name, fmt::format("cannot be written: {}", code.message()));
     self.open(self.folder / final_name, false);
 }
 
-bool SweepStore::in(const fs::path& folder) {
-    std::error_code code;
-    return fs::exists(folder / final_name, code) || fs::exists(folder / part_name, code);
-}
+std::string SweepStore::file_name() const { return implementation_->file.filename().string(); }
 
 bool SweepStore::beside_complete() const {
     const auto& self = *implementation_;
     return self.file.filename() == part_name && fs::exists(self.folder / final_name);
-}
-
-namespace {
-
-// The motions of the answers so far, by level.
-class SeenMotions {
-public:
-    // Whether an answer at this place came before with the same motion; if not, it is one from now on.
-    bool before(const OrbitAnswer& answer, int place) {
-        const auto motion = answer.orbit ? least_label(*answer.orbit) : std::nullopt;
-        if (!motion) return false;
-        bool known = false;
-        const auto numbers = fingerprints(*motion);
-        for (std::size_t grid = 0; grid < numbers.size(); ++grid)
-            known = !seen_.at(grid).emplace(place, numbers.at(grid)).second || known;
-        return known;
-    }
-
-private:
-    std::array<std::set<std::pair<int, std::uint64_t>>, 2> seen_;
-};
-
-}  // namespace
-
-Exported export_sweep(const SweepStore& store, const fs::path& folder, bool distinct) {
-    SweepSummary summary;
-    std::optional<SweepFolder> files;
-    SeenMotions seen;
-    if (!store.beside_complete()) files.emplace(folder, store.scene());
-    store.for_each([&](const WorkResult& result) {
-        if (result.record) {
-            count(summary, *result.record, store.scene().all_kinds);
-            if (files) files->pattern(*result.record);
-        }
-        if (result.answer) {
-            count(summary, *result.answer, result.place > 0);
-            const bool copy = seen.before(*result.answer, result.place);
-            if (copy && result.place > 0) ++summary.copies;
-            if (files) files->answer(*result.answer, copy && distinct);
-        }
-    });
-    summary.seconds = store.seconds();
-    summary.interrupted = !store.complete();
-    if (files) {
-        std::string line = files->finish(summary);
-        if (summary.interrupted) line += "; --resume goes on with them";
-        return {summary, std::move(line)};
-    }
-    return {summary, fmt::format("interrupted: {} keeps its complete results; what was done now is in {}, and "
-                                 "--resume goes on with it",
-                                 folder.string(), part_name)};
 }
 
 }  // namespace nsma

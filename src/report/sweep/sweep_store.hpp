@@ -42,27 +42,15 @@ public:
     [[nodiscard]] const Scene& scene() const;
     [[nodiscard]] bool complete() const;
     [[nodiscard]] bool beside_complete() const;  ///< a part file, with complete results beside it
-    [[nodiscard]] double seconds() const;        ///< time spent on it, over all runs that ended in order
+    [[nodiscard]] std::string file_name() const;
+    [[nodiscard]] double seconds() const;  ///< time spent on it, over all runs that ended in order
     void add_seconds(double seconds);
     /// Marks the sweep as complete and gives the file its final name.
     void finish();
-
-    /// Whether a folder holds a store, complete or not.
-    [[nodiscard]] static bool in(const std::filesystem::path& folder);
 
 private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
-
-/// Writes patterns.csv, levels.csv, orbits.jsonl, timings.csv and the summary of a store into
-/// its folder, each complete or not at all; a part file never replaces complete results. `distinct` leaves answers out
-/// whose motion one before at the same level has under another label. `line` tells the user where they are.
-struct Exported {
-    SweepSummary summary;
-    std::string line;
-};
-[[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder,
-                                    bool distinct = false);
 
 }  // namespace nsma

@@ -1,11 +1,9 @@
 #include "tables.hpp"
 
-#include <algorithm>
-#include <array>
-
 #include <fmt/format.h>
 
 #include "report/csv.hpp"
+#include "report/record_values.hpp"
 
 namespace nsma {
 namespace {
@@ -14,26 +12,37 @@ constexpr const char* scan_columns =
     "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,verdict,"
     "energy_ratio_min,energy_ratio_max,kind";
 
-/// A value that is a ratio E/E_g, hence absent when the gap sets no scale.
-std::optional<double> ratio(const Bar& bar, const std::optional<double>& value) {
-    return bar.gap_sign() == 0 ? std::nullopt : value;
-}
+constexpr const char* patterns_columns =
+    "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,verdict,"
+    "energy_ratio_min,energy_ratio_max,kind,energy_min_joule,energy_max_joule,energy_unbounded,proved,"
+    "energy_min_exact,energy_max_exact,energy_bound,reason";
 
-std::optional<double> joule(const Bar& bar, const std::optional<double>& value) {
-    if (!value) return std::nullopt;
-    return *value * bar.energy_unit();
-}
+constexpr const char* levels_columns =
+    "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,period_s,level,verdict,reason,"
+    "energy_ratio,energy_joule,objective,objective_value,method,agreement,objective_difference,"
+    "violation_periodicity,violation_cond1,violation_cond2,violation_cond3,violation_energy,"
+    "minimal_period_steps,silent_contact_steps,wall_touches,full_support,"
+    "ipopt_status,ipopt_objective,nlopt_status,nlopt_objective,"
+    "verdict_proved,objective_bound,objective_gap,global,kkt_residual,kind,forceless,"
+    "same_free_steps,same_contact_steps,same_shift_steps,same_reversed";
 
-std::optional<double> greatest(const EnergyInterval& interval) {
-    return interval.unbounded ? std::nullopt : interval.greatest;
-}
+std::string csv_field(std::monostate) { return {}; }
+std::string csv_field(bool value) { return value ? "true" : "false"; }
+std::string csv_field(std::int64_t value) { return std::to_string(value); }
+std::string csv_field(double value) { return csv_number(value); }
+std::string csv_field(const std::string& text) { return csv_text(text); }
 
-std::string pattern_fields(const Bar& bar, const Pattern& pattern, int dimension) {
-    return fmt::format("{},{},{},{},{},{},{}", pattern.cells, csv_number(bar.gap), pattern.free_steps,
-                       pattern.contact_steps, pattern.period_steps(), dimension, csv_number(pattern.frequency_ratio()));
+// The values of these columns.
+std::string csv_row(std::string_view columns, const NamedValues& values) {
+    std::string row;
+    for (;;) {
+        const std::size_t end = columns.find(',');
+        row += std::visit([](const auto& value) { return csv_field(value); }, values.at(columns.substr(0, end)));
+        if (end == std::string_view::npos) return row;
+        row += ',';
+        columns.remove_prefix(end + 1);
+    }
 }
-
-std::string_view kind_text(const std::optional<PatternKind>& kind) { return kind ? name(*kind) : std::string_view(); }
 
 std::string terminal_number(const std::optional<double>& value) {
     return value ? fmt::format("{:.6g}", *value) : std::string("-");
@@ -44,9 +53,7 @@ std::string terminal_number(const std::optional<double>& value) {
 std::string scan_csv_header() { return scan_columns; }
 
 std::string scan_csv_row(const Bar& bar, const PatternRecord& record) {
-    return fmt::format("{},{},{},{},{}", pattern_fields(bar, record.pattern, record.kernel_dimension),
-                       name(record.verdict), csv_number(ratio(bar, record.interval.least)),
-                       csv_number(ratio(bar, greatest(record.interval))), kind_text(record.kind));
+    return csv_row(scan_columns, named_values(bar, record));
 }
 
 std::string scan_table(const Bar& bar, const std::vector<PatternRecord>& records) {
@@ -65,87 +72,16 @@ std::string scan_table(const Bar& bar, const std::vector<PatternRecord>& records
     return table;
 }
 
-std::string patterns_csv_header() {
-    return std::string(scan_columns) +
-           ",energy_min_joule,energy_max_joule,energy_unbounded,proved,"
-           "energy_min_exact,energy_max_exact,energy_bound,reason";
-}
+std::string patterns_csv_header() { return patterns_columns; }
 
 std::string patterns_csv_row(const Bar& bar, const PatternRecord& record) {
-    const EnergyInterval& interval = record.interval;
-    return fmt::format("{},{},{},{},{},{},{},{},{}", scan_csv_row(bar, record), csv_number(joule(bar, interval.least)),
-                       csv_number(joule(bar, greatest(interval))), interval.unbounded, record.proved,
-                       interval.least_exact, interval.greatest_exact, csv_number(interval.bound),
-                       csv_text(record.reason));
+    return csv_row(patterns_columns, named_values(bar, record));
 }
 
-std::string levels_csv_header() {
-    return "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,"
-           "period_s,level,"
-           "verdict,reason,energy_ratio,energy_joule,objective,objective_value,method,agreement,"
-           "objective_difference,violation_periodicity,violation_cond1,violation_cond2,violation_"
-           "cond3,"
-           "violation_energy,minimal_period_steps,silent_contact_steps,wall_touches,full_support,"
-           "ipopt_status,"
-           "ipopt_objective,nlopt_status,nlopt_objective,verdict_proved,objective_bound,objective_gap,"
-           "global,kkt_residual,kind,forceless,same_free_steps,same_contact_steps,same_shift_steps,same_reversed";
-}
+std::string levels_csv_header() { return levels_columns; }
 
 std::string levels_csv_row(const Bar& bar, const OrbitAnswer& answer) {
-    const double period = answer.pattern.period_steps() * Mesh{answer.pattern.cells}.time_step(bar);
-    std::string row = pattern_fields(bar, answer.pattern, answer.kernel_dimension);
-    const auto add = [&row](const std::string& field) { row += "," + field; };
-    add(csv_number(period));
-    add(csv_number(answer.level));
-    add(std::string(name(answer.verdict)));
-    add(csv_text(answer.reason));
-    add(csv_number(ratio(bar, answer.energy)));
-    add(csv_number(joule(bar, answer.energy)));
-    add(std::string(name(answer.objective)));
-    add(csv_number(answer.objective_value));
-    add(csv_text(answer.method));
-    add(std::string(name(answer.agreement)));
-    add(csv_number(answer.objective_difference));
-    if (answer.replay) {
-        const Violations& violations = answer.replay->violations;
-        for (const double value :
-             {violations.periodicity, violations.cond1, violations.cond2, violations.cond3, violations.energy}) {
-            add(csv_number(value));
-        }
-    } else {
-        row += ",,,,,";
-    }
-    if (answer.classification) {
-        const Classification& kind = *answer.classification;
-        add(fmt::format("{},{},{},{}", kind.minimal_period_steps, kind.silent_contact_steps, kind.wall_touches,
-                        kind.full_support));
-    } else {
-        row += ",,,,";
-    }
-    for (const char* solver : {"ipopt", "nlopt"}) {
-        const SolverRun* run = best_run(answer, solver);
-        add(run == nullptr ? std::string() : csv_text(run->status));
-        add(run == nullptr || !run->usable ? std::string() : csv_number(run->objective));
-    }
-    add(fmt::format("{}", answer.verdict_proved));
-    if (const auto& optimality = answer.optimality) {
-        const bool bounded = optimality->lower_bound.has_value();
-        add(csv_number(optimality->lower_bound));
-        add(bounded ? csv_number(optimality->gap) : std::string());
-        add(fmt::format("{}", optimality->global));
-        add(csv_number(optimality->kkt_residual));
-    } else {
-        row += ",,,,";
-    }
-    add(std::string(kind_text(answer.kind)));
-    add(answer.classification ? fmt::format("{}", answer.classification->forceless) : std::string());
-    if (answer.classification && answer.classification->same_motion_as) {
-        const MotionLabel& label = *answer.classification->same_motion_as;
-        add(fmt::format("{},{},{},{}", label.free_steps, label.contact_steps, label.shift_steps, label.reversed));
-    } else {
-        row += ",,,,";
-    }
-    return row;
+    return csv_row(levels_columns, named_values(bar, answer));
 }
 
 std::string timings_csv_header() { return "free_steps,contact_steps,level,what,start,status,iterations,seconds"; }
@@ -201,13 +137,6 @@ std::string summary_table(const SweepSummary& summary) {
     row("worst replayed violation", fmt::format("{:.2e}", summary.worst_violation));
     row("time [s]", fmt::format("{:.2f}", summary.seconds));
     return table;
-}
-
-const SolverRun* best_run(const OrbitAnswer& answer, std::string_view solver) {
-    const auto run = std::find_if(answer.solvers.begin(), answer.solvers.end(), [solver](const SolverRun& candidate) {
-        return std::string_view(candidate.name).substr(0, solver.size()) == solver;
-    });
-    return run == answer.solvers.end() ? nullptr : &*run;
 }
 
 }  // namespace nsma

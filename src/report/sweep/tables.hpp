@@ -39,7 +39,4 @@ namespace nsma {
 /// The counts of a sweep as an aligned table; ends with a line end.
 [[nodiscard]] std::string summary_table(const SweepSummary& summary);
 
-/// The best run of the solver whose name begins with `solver` ("ipopt" or "nlopt"), or null.
-[[nodiscard]] const SolverRun* best_run(const OrbitAnswer& answer, std::string_view solver);
-
 }  // namespace nsma

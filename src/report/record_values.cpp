@@ -1,0 +1,60 @@
+#include "record_values.hpp"
+
+#include <algorithm>
+
+namespace nsma {
+namespace {
+
+Value value_of(const std::optional<double>& value) { return value ? Value(*value) : Value(); }
+
+Value text_value(const std::string& text) { return text.empty() ? Value() : Value(text); }
+
+void add_energy(NamedValues& values, const Bar& bar, const char* ratio, const char* joule,
+                const std::optional<double>& energy) {
+    values[ratio] = bar.gap_sign() != 0 ? value_of(energy) : Value();
+    values[joule] = energy ? Value(*energy * bar.energy_unit()) : Value();
+}
+
+void add_run(NamedValues& values, const char* status, const char* objective, const SolverRun* run) {
+    values[status] = run != nullptr ? Value(run->status) : Value();
+    values[objective] = run != nullptr && run->usable ? Value(run->objective) : Value();
+}
+
+template <class Record>
+NamedValues common_values(const Bar& bar, const Record& record) {
+    NamedValues values;
+    for (const auto& field : fields_of<Record>()) values[field.name] = field.get(record);
+    values["gap"] = bar.gap;
+    values["period_steps"] = std::int64_t{record.pattern.period_steps()};
+    values["frequency_ratio"] = record.pattern.frequency_ratio();
+    const EnergyInterval& interval = record.interval;
+    add_energy(values, bar, "energy_ratio_min", "energy_min_joule", interval.least);
+    add_energy(values, bar, "energy_ratio_max", "energy_max_joule",
+               interval.unbounded ? std::nullopt : interval.greatest);
+    values["energy_min_exact"] = text_value(interval.least_exact);
+    values["energy_max_exact"] = text_value(interval.greatest_exact);
+    return values;
+}
+
+}  // namespace
+
+NamedValues named_values(const Bar& bar, const PatternRecord& record) { return common_values(bar, record); }
+
+NamedValues named_values(const Bar& bar, const OrbitAnswer& answer) {
+    NamedValues values = common_values(bar, answer);
+    values["period_s"] = answer.pattern.period_steps() * Mesh{answer.pattern.cells}.time_step(bar);
+    add_energy(values, bar, "energy_ratio", "energy_joule", answer.energy);
+    values["global"] = values["optimum_global"];
+    if (!answer.optimality || !answer.optimality->lower_bound) values["objective_gap"] = {};
+    add_run(values, "ipopt_status", "ipopt_objective", best_run(answer, "ipopt"));
+    add_run(values, "nlopt_status", "nlopt_objective", best_run(answer, "nlopt"));
+    return values;
+}
+
+const SolverRun* best_run(const OrbitAnswer& answer, std::string_view solver) {
+    const auto run = std::find_if(answer.solvers.begin(), answer.solvers.end(),
+                                  [solver](const SolverRun& candidate) { return candidate.name.starts_with(solver); });
+    return run == answer.solvers.end() ? nullptr : &*run;
+}
+
+}  // namespace nsma

@@ -1,0 +1,88 @@
+#include "sweep_export.hpp"
+
+#include <array>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "sweep_folder.hpp"
+
+namespace nsma {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// The motions of the answers so far, by level.
+class SeenMotions {
+public:
+    // Whether an answer at this place came before with the same motion; if not, it is one from now on.
+    bool before(const OrbitAnswer& answer, int place) {
+        const auto motion = answer.orbit ? least_label(*answer.orbit) : std::nullopt;
+        if (!motion) return false;
+        bool known = false;
+        const auto numbers = fingerprints(*motion);
+        for (std::size_t grid = 0; grid < numbers.size(); ++grid)
+            known = !seen_.at(grid).emplace(place, numbers.at(grid)).second || known;
+        return known;
+    }
+
+private:
+    std::array<std::set<std::pair<int, std::uint64_t>>, 2> seen_;
+};
+
+}  // namespace
+
+Exported export_sweep(const SweepStore& store, const fs::path& folder, bool distinct) {
+    SweepSummary summary;
+    std::optional<SweepFolder> files;
+    SeenMotions seen;
+    if (!store.beside_complete()) files.emplace(folder, store.scene());
+    store.for_each([&](const WorkResult& result) {
+        if (result.record) {
+            count(summary, *result.record, store.scene().all_kinds);
+            if (files) files->pattern(*result.record);
+        }
+        if (result.answer) {
+            count(summary, *result.answer, result.place > 0);
+            const bool copy = seen.before(*result.answer, result.place);
+            if (copy && result.place > 0) ++summary.copies;
+            if (files) files->answer(*result.answer, copy && distinct);
+        }
+    });
+    summary.seconds = store.seconds();
+    summary.interrupted = !store.complete();
+    if (!files) {
+        return {summary, fmt::format("interrupted: {} keeps its complete results; what was done now is in {}, and "
+                                     "--resume goes on with it",
+                                     folder.string(), store.file_name())};
+    }
+    files->finish(summary);
+    const char* const line = summary.interrupted ? "interrupted: partial results are in {}; --resume goes on with them"
+                                                 : "results are in {}";
+    return {summary, fmt::format(fmt::runtime(line), folder.string())};
+}
+
+StoredSweep read_sweep_folder(const fs::path& folder) {
+    std::error_code code;
+    if (!fs::is_directory(folder, code)) {
+        fail(folder,
+             fmt::format("expected the folder of a sweep, got {}", fs::exists(folder, code) ? "a file" : "nothing"));
+    }
+    const SweepStore store(folder);
+    StoredSweep sweep;
+    sweep.scene = store.scene();
+    store.for_each([&sweep](WorkResult result) {
+        if (result.record) sweep.patterns.push_back(std::move(*result.record));
+        if (!result.answer) return;
+        OrbitAnswer& answer = *result.answer;
+        sweep.levels.push_back(
+            {answer.pattern, answer.level, answer.verdict, answer.energy, std::string(name(answer.agreement))});
+        if (answer.orbit) {
+            sweep.orbits.push_back({answer.level, answer.energy.value_or(0.0), std::move(*answer.orbit)});
+        }
+    });
+    return sweep;
+}
+
+}  // namespace nsma

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sweep_store.hpp"
+
+namespace nsma {
+
+/// Writes patterns.csv, levels.csv, orbits.jsonl, timings.csv and the summary of a store into
+/// its folder, each complete or not at all; a part file never replaces complete results. `distinct` leaves answers out
+/// whose motion one before at the same level has under another label. `line` tells the user where they are.
+struct Exported {
+    SweepSummary summary;
+    std::string line;
+};
+[[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder,
+                                    bool distinct = false);
+
+/// A stored answer, as far as charts need it.
+struct StoredLevel {
+    Pattern pattern;
+    std::optional<double> level;  ///< in energy units; absent: the least-energy orbit
+    Verdict verdict = Verdict::failed;
+    std::optional<double> energy;  ///< in energy units of the bar
+    std::string agreement;
+};
+
+struct StoredOrbit {
+    std::optional<double> level;  ///< in energy units; absent: the least-energy orbit
+    double energy = 0;            ///< in energy units of the bar
+    Orbit orbit;                  ///< rebuilt from the stored amplitudes
+};
+
+struct StoredSweep {
+    Scene scene;
+    std::vector<PatternRecord> patterns;
+    std::vector<StoredLevel> levels;
+    std::vector<StoredOrbit> orbits;
+};
+
+/// Reads the store of a finished (or interrupted) sweep back. Throws InputError when it is missing or damaged.
+[[nodiscard]] StoredSweep read_sweep_folder(const std::filesystem::path& folder);
+
+}  // namespace nsma
