@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <random>
-#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -23,29 +23,21 @@ void fail(const fs::path& path, const std::string& what) {
     throw InputError(one_line(fmt::format("{}: {}", path.string(), what)));
 }
 
-std::optional<std::string> contents(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return std::nullopt;
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-}
+void fail_errno(const fs::path& path) { fail(path, fmt::format("cannot be written: {}", std::strerror(errno))); }
 
 PartFile::PartFile(fs::path file)
     : file_(std::move(file)), part_(file_.string() + ".part"), stream_(std::fopen(part_.c_str(), "wb")) {
-    if (!stream_) fail_errno();
+    if (!stream_) fail_errno(part_);
 }
-
-void PartFile::fail_errno() const { fail(part_, fmt::format("cannot be written: {}", std::strerror(errno))); }
 
 void PartFile::write(std::string_view text) {
     std::FILE* stream = stream_.get();
-    if (std::fwrite(text.data(), 1, text.size(), stream) != text.size() || std::fflush(stream) != 0) fail_errno();
+    if (std::fwrite(text.data(), 1, text.size(), stream) != text.size() || std::fflush(stream) != 0) fail_errno(part_);
 }
 
 void PartFile::close() {
-    if (fsync(fileno(stream_.get())) != 0 && errno != EINVAL) fail_errno();  // a pipe or a device has no disk
-    if (std::fclose(stream_.release()) != 0) fail_errno();
+    if (fsync(fileno(stream_.get())) != 0 && errno != EINVAL) fail_errno(part_);  // a pipe or a device has no disk
+    if (std::fclose(stream_.release()) != 0) fail_errno(part_);
 }
 
 void PartFile::put_in_place() {
@@ -95,9 +87,9 @@ void prepare_results_folder(const fs::path& folder, const Scene& scene, std::spa
         }
         write_scene(copy, scene.text);
     }
-    const auto text = contents(copy);
-    if (!text) fail(copy, fmt::format("cannot be read: {}", std::strerror(errno)));
-    if (*text != scene.text) {
+    std::ifstream stream(copy, std::ios::binary);
+    if (!stream) fail(copy, fmt::format("cannot be read: {}", std::strerror(errno)));
+    if (std::string(std::istreambuf_iterator<char>(stream), {}) != scene.text) {
         fail(folder,
              "holds results of another scene (its scene.toml differs); choose another folder "
              "or remove it");

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,8 +13,8 @@ namespace nsma {
 
 /// Throws InputError "path: what", on one line.
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what);
-/// The bytes of a file; absent where it cannot be opened, with the reason in errno.
-[[nodiscard]] std::optional<std::string> contents(const std::filesystem::path& file);
+/// The same, "cannot be written" with the reason that errno holds.
+[[noreturn]] void fail_errno(const std::filesystem::path& path);
 
 /// A file that is called NAME.part until it is whole. Throws InputError (one line) where it cannot be written.
 class PartFile {
@@ -33,7 +32,6 @@ private:
     struct Close {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
-    [[noreturn]] void fail_errno() const;
 
     std::filesystem::path file_, part_;
     std::unique_ptr<std::FILE, Close> stream_;

@@ -50,43 +50,24 @@ int SweepQueue::strand_of(const Open& open, int place) const {
     return place == 0 ? 0 : 1 - first_place_ + (place - 1) / open.strand_length;
 }
 
-int SweepQueue::first_place_of(const Open& open, int strand) const {
-    const int level_strand = strand - (1 - first_place_);
-    return level_strand < 0 ? 0 : 1 + level_strand * open.strand_length;
-}
-
-int SweepQueue::end_place_of(const Open& open, int strand) const {
-    return std::min(first_place_of(open, strand + 1), last_place_ + 1);
-}
-
-SweepQueue::State& SweepQueue::state_at(Open& open, int place) const {
-    return open.places.at(static_cast<std::size_t>(place - first_place_));
-}
-
-SweepQueue::Strand& SweepQueue::begin(Open& open, int strand) const {
-    const auto [found, is_new] = open.begun.try_emplace(strand);
-    if (is_new) found->second.next = first_place_of(open, strand);
-    return found->second;
-}
-
-void SweepQueue::sit(int worker, Seat seat) {
-    leave(worker);
-    seats_[worker] = seat;
-    const auto open = open_.find(seat.pattern);
+void SweepQueue::assign(int worker, Hold hold) {
+    release(worker);
+    const auto open = open_.find(hold.pattern);
+    holds_[worker] = std::move(hold);
     if (open == open_.end()) return;
     ++open->second.workers;
-    unheld_.erase(seat.pattern);
+    unheld_.erase(open->first);
 }
 
-void SweepQueue::leave(int worker) {
-    const auto seat = seats_.find(worker);
-    if (seat == seats_.end()) return;
-    const auto open = open_.find(seat->second.pattern);
+void SweepQueue::release(int worker) {
+    const auto hold = holds_.find(worker);
+    if (hold == holds_.end()) return;
+    const auto open = open_.find(hold->second.pattern);
     if (open != open_.end() && --open->second.workers == 0) unheld_.insert(open->first);
-    seats_.erase(seat);
+    holds_.erase(hold);
 }
 
-void SweepQueue::decided(const WorkResult& result) {
+void SweepQueue::verdict_done(const WorkResult& result) {
     State& state = state_.at(at(result.pattern));
     if (state == State::done) return;
     state = State::done;
@@ -96,27 +77,26 @@ void SweepQueue::decided(const WorkResult& result) {
     total_ += last_place_;
     Open& open = open_[result.pattern];
     open.left = last_place_ + 1 - first_place_;
-    open.places.assign(at(open.left), State::left);
-    if (nearest_) {
-        open.strand_length = std::max(last_place_, 1);
-    } else if (ipopt_is_usual(options_)) {
-        open.strand_length = warm_strand;
+    open.done.resize(at(open.left));
+    open.strand_length = nearest_ ? std::max(last_place_, 1) : ipopt_is_usual(options_) ? warm_strand : 1;
+    for (int place = first_place_; place <= last_place_; place = open.strands.back().end) {
+        const int end = place == 0 ? 1 : std::min(place + open.strand_length, last_place_ + 1);
+        open.ready.insert(open.ready.end(), static_cast<int>(open.strands.size()));
+        open.strands.push_back({place, end, {}});
     }
-    open.available = strands(open);
     open.workers = static_cast<int>(std::count_if(
-        seats_.begin(), seats_.end(), [&](const auto& seat) { return seat.second.pattern == result.pattern; }));
+        holds_.begin(), holds_.end(), [&](const auto& hold) { return hold.second.pattern == result.pattern; }));
     if (open.workers == 0) unheld_.insert(result.pattern);
 }
 
 void SweepQueue::done(const WorkResult& result) {
-    if (result.place < 0) return decided(result);
+    if (result.place < 0) return verdict_done(result);
     const auto found = open_.find(result.pattern);
     if (found == open_.end()) return;
     Open& open = found->second;
-    State& state = state_at(open, result.place);
-    if (state == State::done) return;
-    const bool handed = state == State::handed;
-    state = State::done;
+    const auto index = [this](int place) { return at(place - first_place_); };
+    if (open.done.at(index(result.place))) return;
+    open.done[index(result.place)] = true;
     if (result.place > 0) ++done_;
     if (--open.left == 0) {
         unheld_.erase(result.pattern);
@@ -124,50 +104,35 @@ void SweepQueue::done(const WorkResult& result) {
         return;
     }
     const int number = strand_of(open, result.place);
-    Strand& strand = begin(open, number);
-    const int end = end_place_of(open, number);
-    while (strand.next < end && state_at(open, strand.next) == State::done) ++strand.next;
-    const bool finished = strand.next == end;
-    if (handed && !finished) ++open.available;
-    if (!handed && finished) --open.available;
-    if (finished) {
-        open.begun.erase(number);
-        open.waiting.erase(number);
+    Strand& strand = open.strands[at(number)];
+    const bool handed = !open.ready.contains(number) && strand.next != result.place;
+    while (strand.next < strand.end && open.done[index(strand.next)]) ++strand.next;
+    if (strand.next == strand.end) {
+        open.ready.erase(number);
+        strand.before = {};
         return;
     }
     if (result.answer->orbit && result.place < strand.next) {
         strand.before.assign(result.answer->orbit->beta.begin(), result.answer->orbit->beta.end());
     }
-    open.waiting.insert(number);
+    if (!handed) open.ready.insert(number);
 }
 
-std::optional<WorkUnit> SweepQueue::take(long pattern, int worker) {
+// Of the worker's own strand, else of the first one that is ready.
+std::optional<WorkUnit> SweepQueue::next_place(long pattern, int worker) {
     Open& open = open_.at(pattern);
-    if (open.available == 0) return std::nullopt;
-    int number = -1;
-    if (!open.waiting.empty()) {
-        // Its own strand before another.
-        const auto seat = seats_.find(worker);
-        const bool own = seat != seats_.end() && seat->second.pattern == pattern && seat->second.place >= 0;
-        const auto first = own ? open.waiting.find(strand_of(open, seat->second.place)) : open.waiting.end();
-        number = first != open.waiting.end() ? *first : *open.waiting.begin();
-        open.waiting.erase(number);
-    } else {
-        const auto passed = [&](int strand) {
-            return state_at(open, first_place_of(open, strand)) != State::left || open.begun.contains(strand);
-        };
-        while (passed(open.fresh)) ++open.fresh;
-        number = open.fresh++;
-    }
-    const Strand& strand = begin(open, number);
-    --open.available;
-    state_at(open, strand.next) = State::handed;
-    WorkUnit unit{pattern, strand.next, strand.before};
-    sit(worker, {pattern, unit.place, {}});
-    return unit;
+    if (open.ready.empty()) return std::nullopt;
+    const auto hold = holds_.find(worker);
+    const bool own = hold != holds_.end() && hold->second.pattern == pattern && hold->second.place >= 0;
+    auto number = own ? open.ready.find(strand_of(open, hold->second.place)) : open.ready.end();
+    if (number == open.ready.end()) number = open.ready.begin();
+    const Strand& strand = open.strands[at(*number)];
+    open.ready.erase(number);
+    assign(worker, {pattern, strand.next, {}});
+    return WorkUnit{pattern, strand.next, strand.before};
 }
 
-std::vector<WorkUnit> SweepQueue::decide(int worker) {
+std::vector<WorkUnit> SweepQueue::next_verdicts(int worker) {
     std::vector<long> patterns;
     const auto add = [&](long pattern) {
         if (state_[at(pattern)] == State::left) patterns.push_back(pattern);
@@ -184,48 +149,39 @@ std::vector<WorkUnit> SweepQueue::decide(int worker) {
         state_[at(pattern)] = State::handed;
         units.push_back({pattern, -1, {}});
     }
-    if (!patterns.empty()) sit(worker, {patterns.back(), -1, patterns});  // the last one's problem is at hand then
+    if (!patterns.empty()) assign(worker, {patterns.back(), -1, patterns});  // the last one's problem is at hand then
     return units;
 }
 
-// With the pattern that has most strands left.
-std::optional<WorkUnit> SweepQueue::help(int worker) {
-    const auto most = std::max_element(open_.begin(), open_.end(), [](const auto& a, const auto& b) {
-        return a.second.available < b.second.available;
-    });
-    return most == open_.end() ? std::nullopt : take(most->first, worker);
-}
-
 std::vector<WorkUnit> SweepQueue::next(int worker) {
-    const auto seat = seats_.find(worker);
-    if (seat != seats_.end() && open_.contains(seat->second.pattern)) {
-        if (auto unit = take(seat->second.pattern, worker)) return {std::move(*unit)};
-    }
-    if (!unheld_.empty()) {
-        if (auto unit = take(*unheld_.begin(), worker)) return {std::move(*unit)};
-    }
-    if (auto units = decide(worker); !units.empty()) return units;
-    if (auto unit = help(worker)) return {std::move(*unit)};
-    return {};
+    std::optional<WorkUnit> unit;
+    const auto hold = holds_.find(worker);
+    if (hold != holds_.end() && open_.contains(hold->second.pattern)) unit = next_place(hold->second.pattern, worker);
+    if (!unit && !unheld_.empty()) unit = next_place(*unheld_.begin(), worker);
+    if (unit) return {*unit};
+    if (auto units = next_verdicts(worker); !units.empty()) return units;
+    // With the pattern that has most strands left.
+    const auto most = std::max_element(open_.begin(), open_.end(), [](const auto& a, const auto& b) {
+        return a.second.ready.size() < b.second.ready.size();
+    });
+    if (most != open_.end()) unit = next_place(most->first, worker);
+    return unit ? std::vector{*unit} : std::vector<WorkUnit>();
 }
 
 void SweepQueue::lost(int worker) {
-    const auto found = seats_.find(worker);
-    if (found == seats_.end()) return;
-    const Seat seat = std::move(found->second);
-    leave(worker);
-    for (const long pattern : seat.verdicts) {
+    const auto found = holds_.find(worker);
+    if (found == holds_.end()) return;
+    const Hold hold = found->second;
+    release(worker);
+    for (const long pattern : hold.verdicts) {
         if (state_[at(pattern)] != State::handed) continue;
         state_[at(pattern)] = State::left;
         returned_.push_back(pattern);
     }
-    if (seat.place < 0) return;
-    const auto open = open_.find(seat.pattern);
-    if (open == open_.end() || state_at(open->second, seat.place) != State::handed) return;
-    const int strand = strand_of(open->second, seat.place);
-    state_at(open->second, seat.place) = State::left;
-    open->second.waiting.insert(strand);
-    ++open->second.available;
+    const auto open = open_.find(hold.pattern);
+    if (hold.place < 0 || open == open_.end()) return;
+    const int strand = strand_of(open->second, hold.place);
+    if (open->second.strands[at(strand)].next == hold.place) open->second.ready.insert(strand);
 }
 
 }  // namespace nsma

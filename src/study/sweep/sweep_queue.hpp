@@ -21,7 +21,7 @@ namespace nsma {
 ///
 /// Verdicts take microseconds: of the longest first, several are handed out together.
 ///
-/// Its memory: a byte and a number a pattern, a byte a level of the patterns in hand.
+/// Its memory: a byte and a number a pattern, some hundred bytes a strand of the patterns in hand.
 class SweepQueue {
 public:
     enum class Order { scene, longest_first };
@@ -40,41 +40,34 @@ public:
 
 private:
     enum class State : std::uint8_t { left, handed, done };
-    // A strand begun and not done.
+    // Places that one worker does in their order.
     struct Strand {
         int next = 0;                // place; those before it are done
+        int end = 0;                 // the place after its last
         std::vector<double> before;  // beta of its last orbit
     };
     // An admissible pattern with places left.
     struct Open {
-        std::vector<State> places;  // from first_place_ on
-        int left = 0;               // places not done
+        std::vector<bool> done;  // by place, from first_place_ on
+        int left = 0;            // places not done
         int strand_length = 1;
-        int available = 0;  // strands neither done nor handed
-        std::map<int, Strand> begun;
-        std::set<int> waiting;  // those of them that are not handed
-        int fresh = 0;          // the strands before it are begun or done
-        int workers = 0;        // whose seat is here
+        std::vector<Strand> strands;
+        std::set<int> ready;  // strands that are neither done nor handed
+        int workers = 0;      // that hold it
     };
     // What a worker has in hand, or had last.
-    struct Seat {
+    struct Hold {
         long pattern = 0;
         int place = -1;
         std::vector<long> verdicts;  // patterns; place -1
     };
 
     [[nodiscard]] int strand_of(const Open& open, int place) const;
-    [[nodiscard]] int first_place_of(const Open& open, int strand) const;
-    [[nodiscard]] int end_place_of(const Open& open, int strand) const;
-    [[nodiscard]] int strands(const Open& open) const { return strand_of(open, last_place_) + 1; }
-    [[nodiscard]] State& state_at(Open& open, int place) const;
-    Strand& begin(Open& open, int strand) const;
-    void sit(int worker, Seat seat);
-    void leave(int worker);
-    void decided(const WorkResult& result);
-    [[nodiscard]] std::optional<WorkUnit> take(long pattern, int worker);
-    [[nodiscard]] std::vector<WorkUnit> decide(int worker);
-    [[nodiscard]] std::optional<WorkUnit> help(int worker);
+    void assign(int worker, Hold hold);
+    void release(int worker);
+    void verdict_done(const WorkResult& result);
+    [[nodiscard]] std::optional<WorkUnit> next_place(long pattern, int worker);
+    [[nodiscard]] std::vector<WorkUnit> next_verdicts(int worker);
 
     OrbitSolverOptions options_;
     bool all_kinds_ = false;
@@ -88,7 +81,7 @@ private:
     std::vector<long> returned_;  // verdicts of lost workers
     std::map<long, Open> open_;
     std::set<long> unheld_;  // open patterns without a worker: of an earlier run, or of lost workers
-    std::map<int, Seat> seats_;
+    std::map<int, Hold> holds_;
     long undecided_ = 0;
     long done_ = 0;
     long total_ = 0;
