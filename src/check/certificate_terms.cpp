@@ -19,6 +19,12 @@ CertificateTerms::CertificateTerms(const Certificate& of)
     contact.assign(row.data(), row.data() + row.size());
 }
 
+bool CertificateTerms::allows(std::size_t column, const Rational& value) const {
+    if (value == 0) return true;
+    const Sign sign = signs[column];
+    return sign == Sign::free || sign == (value > 0 ? Sign::nonnegative : Sign::nonpositive);
+}
+
 CertificateTerms::Dense CertificateTerms::dense(const RationalVector& sparse, const char* what) const {
     Dense result(dimension);
     int last = -1;
@@ -63,21 +69,14 @@ CertificateTerms::Dense CertificateTerms::combine_rows(const RationalVector& row
     return result;
 }
 
-CertificateTerms::Dense CertificateTerms::remainder(const Dense& form, const RowCombination& combination) const {
-    Dense result = combine_rows(combination.rows);
-    for (std::size_t c = 0; c < dimension; ++c) {
-        result[c] = form[c] - result[c] - combination.contact * contact[c];
-    }
-    return result;
-}
-
 Rational CertificateTerms::verified(const FormBound& bound) const {
-    const Dense rest = remainder(dense(bound.form, "form"), bound.proof);
+    const Dense form = dense(bound.form, "form");
+    const Dense rows = combine_rows(bound.proof.rows);
     for (std::size_t c = 0; c < dimension; ++c) {
-        const bool dominated = signs[c] == Sign::zero || (signs[c] == Sign::free && rest[c] == 0) ||
-                               (signs[c] == Sign::nonnegative && rest[c] <= 0) ||
-                               (signs[c] == Sign::nonpositive && rest[c] >= 0);
-        if (!dominated) invalid("bound: multipliers do not dominate " + column_name(static_cast<int>(c)));
+        const Rational rest = form[c] - rows[c] - bound.proof.contact * contact[c];
+        // No allowed value may make the rest positive.
+        if (allows(c, rest) && rest != 0)
+            invalid("bound: multipliers do not dominate " + column_name(static_cast<int>(c)));
     }
     return bound.proof.contact * certificate.gap_sign;
 }

@@ -23,11 +23,11 @@ struct CertificateTerms {
 
     explicit CertificateTerms(const Certificate& of);
 
+    /// Whether COND3 allows a value of this column.
+    [[nodiscard]] bool allows(std::size_t column, const Rational& value) const;
     [[nodiscard]] Dense dense(const RationalVector& sparse, const char* what) const;
     /// sum_n y_n a_n over the columns: step k carries the sum of y_n over n > k.
     [[nodiscard]] Dense combine_rows(const RationalVector& rows) const;
-    /// form - combination; its positive part on COND3's cone would break the bound.
-    [[nodiscard]] Dense remainder(const Dense& form, const RowCombination& combination) const;
     /// Proved upper bound of the form over the admissible set.
     [[nodiscard]] Rational verified(const FormBound& bound) const;
 

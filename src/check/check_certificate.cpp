@@ -39,10 +39,7 @@ private:
     // COND1 and COND3 (a cone); COND2 is the caller's.
     void check_cone(const Dense& beta, const std::string& what) const {
         for (std::size_t c = 0; c < terms_.dimension; ++c) {
-            const bool allowed = terms_.signs[c] == Sign::free || beta[c] == 0 ||
-                                 (terms_.signs[c] == Sign::nonnegative && beta[c] > 0) ||
-                                 (terms_.signs[c] == Sign::nonpositive && beta[c] < 0);
-            if (!allowed) invalid(what + ": COND3 fails at " + column_name(static_cast<int>(c)));
+            if (!terms_.allows(c, beta[c])) invalid(what + ": COND3 fails at " + column_name(static_cast<int>(c)));
         }
         Integer common = 1;
         for (const auto& value : beta) common = lcm(common, denominator(value));
@@ -81,10 +78,7 @@ private:
         Dense result = terms_.combine_rows(certificate_.projection);
         for (std::size_t c = 0; c < terms_.dimension; ++c) {
             result[c] = Rational(certificate_.gap_sign * terms_.contact[c]) - result[c];
-            const bool clipped = terms_.signs[c] == Sign::zero ||
-                                 (terms_.signs[c] == Sign::nonnegative && result[c] < 0) ||
-                                 (terms_.signs[c] == Sign::nonpositive && result[c] > 0);
-            if (clipped) result[c] = 0;
+            if (!terms_.allows(c, result[c])) result[c] = 0;
         }
         return result;
     }

@@ -2,19 +2,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
-#include "form_bounds.hpp"
+#include "set/known_set.hpp"
 
 namespace nsma {
 namespace {
 
+using Shape = AdmissibleSet::Shape;
+using Dense = std::vector<Rational>;
+
+RationalVector sparse(const Dense& dense) {
+    RationalVector result;
+    for (std::size_t i = 0; i < dense.size(); ++i) {
+        if (dense[i] != 0) result.emplace_back(static_cast<int>(i), dense[i]);
+    }
+    return result;
+}
+
+// sum_{k<step} eps_k e_{column(k)} over all columns of beta.
+std::vector<int> partial_sum_row(const Kernel& kernel, int step) {
+    std::vector<int> row(static_cast<std::size_t>(kernel.dimension()), 0);
+    for (int k = 0; k < step; ++k) {
+        const int column = kernel.column(k);
+        if (column >= 0) row[static_cast<std::size_t>(column)] += kernel.sign[static_cast<std::size_t>(k)];
+    }
+    return row;
+}
+
 class Prover {
 public:
-    Prover(const Kernel& kernel, const AdmissibleSet& set)
-        : kernel_(kernel), set_(set), reduction_(set.reduction), bounds_(kernel, set.reduction, set.shape) {
+    Prover(const Kernel& kernel, const AdmissibleSet& set) : kernel_(kernel), set_(set), reduction_(set.reduction) {
         proof_.certificate.pattern = kernel.pattern;
         proof_.certificate.gap_sign = reduction_.gap_sign;
+        if (set.shape == Shape::chain) chain_ = chain_rows(reduction_);
     }
 
     Proof run() {
@@ -28,11 +50,14 @@ public:
             const bool empty = set_.status == AdmissibleSet::Status::empty;
             certificate.claim = empty ? Certificate::Claim::empty : Certificate::Claim::nonempty;
             if (!empty) certificate.kind = pattern_kind(kernel_.pattern);
-            if (reduction_.gap_sign == 0) {
-                closed_gap(empty);
+            if (reduction_.gap_sign == 0 && empty) {
+                certificate.rest = only_rest();
+            } else if (reduction_.gap_sign == 0) {
+                certificate.ray = sparse(unreduced(Dense(variables(), 1)));
             } else {
-                project(empty);
-                if (!empty) claim_least();
+                certificate.projection = projection(empty);
+                // |w|^2 over the reduced columns; check() repeats it over all columns.
+                if (!empty) certificate.energy_least = energy_factor() / Rational(reduction_.contact_row.squaredNorm());
             }
         }
         CheckResult result = check(certificate);
@@ -47,74 +72,109 @@ public:
 
 private:
     [[nodiscard]] std::size_t variables() const { return static_cast<std::size_t>(reduction_.variables()); }
-    [[nodiscard]] int contact(std::size_t j) const { return reduction_.contact_row[static_cast<Eigen::Index>(j)]; }
-
-    // Multipliers of the projection of delta w. A simplex and a nonempty chain need no row; where a chain is empty, so
-    // that delta w is a positive multiple of the sum of all columns, the row of that sum covers it.
-    void project(bool empty) {
-        RowCombination combination;
-        if (empty && set_.shape == AdmissibleSet::Shape::chain) {
-            const int whole = chain_rows(reduction_).prefix.back();
-            if (whole >= 0)
-                combination.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(whole)],
-                                              reduction_.gap_sign * contact(0));
-        }
-        // On columns that rows force to zero, delta w must be covered too.
-        std::vector<Rational> target(static_cast<std::size_t>(kernel_.dimension()));
-        const Eigen::VectorXi w = contact_row(kernel_);
-        for (std::size_t c = 0; c < target.size(); ++c) {
-            target[c] = reduction_.gap_sign * w[static_cast<Eigen::Index>(c)];
-        }
-        bounds_.cover_forced(target, combination);
-        proof_.certificate.projection = std::move(combination.rows);
-    }
-
-    // |w|^2 over the reduced columns gives E_min; check() repeats it over all columns.
-    void claim_least() {
-        proof_.certificate.energy_least = energy_factor() / Rational(reduction_.contact_row.squaredNorm());
-    }
-
+    // COND2's coefficients are all the same over the reduced variables.
+    [[nodiscard]] int weight() const { return reduction_.contact_row[0]; }
     [[nodiscard]] Rational energy_factor() const {
         return {Integer(4) * kernel_.pattern.cells * kernel_.pattern.cells, kernel_.pattern.class_count()};
     }
 
-    void closed_gap(bool empty) {
-        auto& certificate = proof_.certificate;
-        if (!empty) {
-            certificate.ray = sparse(bounds_.unreduced(std::vector<Rational>(variables(), 1)));
-            return;
+    // A vector over the columns of beta from one over the reduced variables.
+    [[nodiscard]] Dense unreduced(const Dense& form) const {
+        Dense result(static_cast<std::size_t>(reduction_.kernel_dimension));
+        for (std::size_t j = 0; j < form.size(); ++j) {
+            result[static_cast<std::size_t>(reduction_.column[j])] = reduction_.flip[j] * form[j];
         }
-        // Forced columns belong to the first form as well: it must bound every column of COND3.
-        std::vector<Rational> all(variables());
-        for (std::size_t j = 0; j < variables(); ++j) all[j] = reduction_.bounded[j] != 0 ? 1 : 0;
-        RowCombination combination;
-        if (variables() > 0) combination = bounds_.bound(all).proof;
-        std::vector<Rational> full = bounds_.unreduced(all);
-        const Conditions terms = conditions(kernel_, 0);
-        for (const auto& zero : reduction_.forced) {
-            const auto c = static_cast<std::size_t>(zero.column);
-            full[c] = terms.bound_of[c] == Conditions::Sign::nonpositive ? -1 : 1;
-        }
-        bounds_.cover_forced(full, combination);
-        certificate.rest.push_back({sparse(full), std::move(combination)});
-        for (std::size_t j = 0; j < variables(); ++j) {
-            if (reduction_.bounded[j] != 0) continue;
-            for (const int side : {1, -1}) {
-                std::vector<Rational> form(variables());
-                form[j] = side;
-                certificate.rest.push_back(bounds_.bound(form));
-            }
-        }
+        return result;
     }
 
-    // The columns of a vertex are whole multiples of 1/c.
-    [[nodiscard]] RationalVector exact_vertex(const Eigen::VectorXd& gamma) const {
-        std::vector<Rational> point(variables());
-        for (std::size_t j = 0; j < variables(); ++j) {
-            const int c = contact(j);
-            point[j] = Rational(std::lround(gamma[static_cast<Eigen::Index>(j)] * c)) / c;
+    // The rows that forced columns to zero, so often that they dominate `form` on those columns. What forces one live
+    // class forces them all, so that the set is then empty.
+    [[nodiscard]] RationalVector forcing_rows(const Dense& form) const {
+        const Conditions terms = conditions(kernel_, reduction_.gap_sign);
+        Dense rest = form;
+        std::map<int, Rational> rows;
+        // In reverse: a row may hold anything in columns that were forced before it.
+        for (auto zero = reduction_.forced.rbegin(); zero != reduction_.forced.rend(); ++zero) {
+            const auto c = static_cast<std::size_t>(zero->column);
+            const auto row = partial_sum_row(kernel_, zero->step);
+            const bool bounded_above = terms.bound_of[c] == Conditions::Sign::nonpositive;
+            if (bounded_above ? rest[c] >= 0 : rest[c] <= 0) continue;
+            const Rational times = rest[c] / row[c];
+            rows[zero->step] += times;
+            for (std::size_t k = 0; k < rest.size(); ++k) rest[k] -= times * row[k];
         }
-        return sparse(bounds_.unreduced(point));
+        return {rows.begin(), rows.end()};
+    }
+
+    // The least upper bound of form . gamma with exact multipliers.
+    [[nodiscard]] FormBound bound(const Dense& form) const {
+        // Of a simplex the sum of all gamma_j is delta/weight, so the greatest coefficient decides.
+        RowCombination proof = set_.shape == Shape::chain
+                                   ? chain_bound(form)
+                                   : RowCombination{{}, *std::max_element(form.begin(), form.end()) / weight()};
+        return {sparse(unreduced(form)), std::move(proof)};
+    }
+
+    // By parts, form . gamma = sum_k (f_k - f_{k+1}) P_k + f_n P_n: a positive difference takes P_k <= 0, a negative
+    // one P_n - P_k <= 0, and what is left is a multiple of COND2.
+    [[nodiscard]] RowCombination chain_bound(const Dense& form) const {
+        RowCombination result;
+        Rational rest = form.back();
+        for (std::size_t k = 1; k < form.size(); ++k) {
+            const Rational difference = form[k - 1] - form[k];
+            if (difference == 0) continue;
+            const int row = difference > 0 ? chain_.prefix[k] : chain_.suffix[k];
+            result.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(row)], abs(difference));
+            if (difference < 0) rest += difference;
+        }
+        std::sort(result.rows.begin(), result.rows.end(),
+                  [](const auto& a, const auto& b) { return a.first < b.first; });
+        result.contact = rest / weight();
+        return result;
+    }
+
+    // Multipliers of the projection of delta w. A simplex and a nonempty chain need no row; where a chain is empty, so
+    // that delta w is a positive multiple of the sum of all columns, the row of that sum covers it.
+    [[nodiscard]] RationalVector projection(bool empty) const {
+        if (empty && set_.shape == Shape::chain) {
+            const int whole = chain_.prefix.back();
+            if (whole < 0) return {};
+            return {{reduction_.row_step[static_cast<std::size_t>(whole)], reduction_.gap_sign * weight()}};
+        }
+        const Eigen::VectorXi w = reduction_.gap_sign * contact_row(kernel_);
+        return forcing_rows({w.begin(), w.end()});
+    }
+
+    // Forms proved <= 0 that leave only rest: first one over every column of COND3.
+    [[nodiscard]] std::vector<FormBound> only_rest() const {
+        if (variables() == 0) {
+            const Conditions terms = conditions(kernel_, 0);
+            Dense sum(static_cast<std::size_t>(kernel_.dimension()));
+            for (const auto& zero : reduction_.forced) {
+                const auto c = static_cast<std::size_t>(zero.column);
+                sum[c] = terms.bound_of[c] == Conditions::Sign::nonpositive ? -1 : 1;
+            }
+            return {{sparse(sum), {forcing_rows(sum), 0}}};
+        }
+        if (set_.shape == Shape::simplex) return {bound(Dense(variables(), 1))};
+        std::vector<FormBound> forms{bound(Dense(variables()))};  // COND3 has none
+        for (std::size_t j = 0; j < variables(); ++j) {
+            for (const int side : {1, -1}) {
+                Dense form(variables());
+                form[j] = side;
+                forms.push_back(bound(form));
+            }
+        }
+        return forms;
+    }
+
+    // The columns of a vertex are whole multiples of 1/weight.
+    [[nodiscard]] RationalVector exact_vertex(const Eigen::VectorXd& gamma) const {
+        Dense point(variables());
+        for (std::size_t j = 0; j < variables(); ++j) {
+            point[j] = Rational(std::lround(gamma[static_cast<Eigen::Index>(j)] * weight())) / weight();
+        }
+        return sparse(unreduced(point));
     }
 
     // The greatest vertex, and the bound that meets it; kept where check() agrees.
@@ -129,35 +189,21 @@ private:
             proof_.unproved = result.reason;
             return;
         }
-        trial.greatest_proof = chain();
+        trial.greatest_proof = greatest_proof();
         trial.energy_bound = proved_energy_bound(trial);  // verified by itself
         proof_.certificate = std::move(trial);
         if (!proof_.exact_greatest()) proof_.unproved = "no bound of the greatest energy meets the energy attained";
     }
 
-    [[nodiscard]] GreatestProof chain() const {
-        GreatestProof proof;
-        for (std::size_t j = 0; j < variables(); ++j) proof.chain.push_back(reduction_.column[j]);
-        // Columns that rows force to zero have no step: the checker does not know that they are
-        // zero, so each enters the chain as well.
-        for (const auto& zero : reduction_.forced) proof.chain.push_back(zero.column);
-        const Eigen::VectorXi w = contact_row(kernel_);
-        std::vector<Rational> partial(static_cast<std::size_t>(kernel_.dimension()));
-        for (std::size_t k = 0; k + 1 < proof.chain.size(); ++k) {
-            const auto c = static_cast<std::size_t>(proof.chain[k]);
-            partial[c] = reduction_.gap_sign * w[static_cast<Eigen::Index>(c)];
-            for (const int side : {1, -1}) {
-                std::vector<Rational> reduced(variables());
-                for (std::size_t j = 0; j < variables(); ++j) {
-                    reduced[j] = side * reduction_.flip[j] * partial[static_cast<std::size_t>(reduction_.column[j])];
-                }
-                FormBound bound = bounds_.bound(reduced);
-                std::vector<Rational> full = partial;
-                for (auto& value : full) value *= side;
-                bound.form = sparse(full);
-                bounds_.cover_forced(full, bound.proof);
-                proof.chain_bounds.push_back(std::move(bound));
-            }
+    [[nodiscard]] GreatestProof greatest_proof() const {
+        GreatestProof proof{reduction_.column, {}};
+        Dense sum(variables());
+        for (std::size_t k = 0; k + 1 < variables(); ++k) {
+            sum[k] = reduction_.gap_sign * weight();
+            proof.chain_bounds.push_back(bound(sum));
+            Dense opposite = sum;
+            for (Rational& value : opposite) value = -value;
+            proof.chain_bounds.push_back(bound(opposite));
         }
         return proof;
     }
@@ -165,7 +211,7 @@ private:
     const Kernel& kernel_;
     const AdmissibleSet& set_;
     const Reduction& reduction_;
-    FormBounds bounds_;
+    ChainRows chain_;  // of a chain
     Proof proof_;
 };
 
