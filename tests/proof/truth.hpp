@@ -6,6 +6,8 @@
 #include <tuple>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "nsma/proof/prove.hpp"
 
 /// What is true of a pattern, and whether a certificate says only that.
@@ -22,6 +24,30 @@ inline std::vector<Pattern> patterns(int cells) {
         for (int contact = 1; contact < period; ++contact) result.push_back({cells, period - contact, contact});
     }
     return result;
+}
+
+// Under the address sanitizer the same tests look at fewer patterns.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr int largest_mesh = 5;
+#else
+inline constexpr int largest_mesh = 8;
+#endif
+
+inline std::string title(const Pattern& pattern, int gap_sign) {
+    return std::string("(") + std::to_string(pattern.cells) + ", " + std::to_string(pattern.free_steps) + ", " +
+           std::to_string(pattern.contact_steps) + ") gap " + std::to_string(gap_sign);
+}
+
+template <typename Visit>
+void for_each_problem(int from, int to, Visit visit) {
+    for (int cells = from; cells <= to; ++cells) {
+        for (const Pattern& pattern : patterns(cells)) {
+            for (const int gap_sign : {-1, 0, 1}) {
+                SCOPED_TRACE(title(pattern, gap_sign));
+                visit(pattern, gap_sign);
+            }
+        }
+    }
 }
 
 inline nsma::Proof proof_of(const Pattern& pattern, int gap_sign) {

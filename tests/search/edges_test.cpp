@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../proof/literal.hpp"
+#include "../check/literal.hpp"
 #include "../proof/truth.hpp"
 
 #include "nsma/search/orbit_solver.hpp"

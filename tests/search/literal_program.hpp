@@ -12,7 +12,7 @@
 #include <Eigen/Dense>
 #include <nlopt.h>
 
-#include "../proof/literal.hpp"
+#include "../check/literal.hpp"
 #include "nsma/set/objective.hpp"
 
 /// The program of an orbit written down once more from the scheme alone, and solved by SLSQP from many starts.
