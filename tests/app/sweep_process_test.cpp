@@ -1,115 +1,55 @@
 // Sweeps as processes: killed at any moment, gone on with, and shared by several ranks.
 
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <random>
-#include <sstream>
-#include <string>
-#include <thread>
-#include <vector>
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "program.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
+using process::contents;
+using process::Limits;
+using process::wait_for;
 
-std::string contents(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-}
-
-/// What the machine may refuse the started program.
-struct Limits {
-    rlim_t file_size = RLIM_INFINITY;  ///< bytes; a write beyond fails, as on a full disk
-    bool no_rights = false;            ///< not root, for whom every folder is writable
-};
-
-class SweepProcess : public testing::Test {
+class SweepProcess : public Program {
 protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "nsma-sweep-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-        scene_ = write_scene("scene.toml", "least-shock", "[1.6, 3.0, 12.0]");
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    std::string write_scene(const std::string& name, const std::string& objective, const std::string& levels) {
-        std::ofstream(folder_ / name) << "title = \"Test\"\n[bar]\nlength = 1.0\nyoung_modulus = 1.0\ndensity = 1.0\n"
-                                         "area = 1.0\ngap = 1.0\n[mesh]\ncells = 3\n[patterns]\nperiod = [1.0, 4.0]\n"
-                                         "[levels]\nlist = "
-                                      << levels << "\n[program]\nobjective = \"" << objective << "\"\n";
-        return (folder_ / name).string();
+    std::string write_scene(const std::string& name, const std::string& objective, const std::string& levels) const {
+        return write(name, scene_text("1.0", "3", "period = [1.0, 4.0]", levels, objective));
     }
 
-    pid_t start(std::vector<std::string> words, Limits limits = {}) {
-        std::vector<char*> pointers;
-        for (auto& word : words) pointers.push_back(word.data());
-        pointers.push_back(nullptr);
-        const std::string out = (folder_ / ".out").string();
-        const pid_t child = fork();
-        if (child == 0) {
-            setpgid(0, 0);  // so that what it starts can be ended with it
-            const int file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-            dup2(file, STDOUT_FILENO);
-            dup2(file, STDERR_FILENO);
-            if (limits.file_size != RLIM_INFINITY) {
-                signal(SIGXFSZ, SIG_IGN);
-                const rlimit limit{limits.file_size, limits.file_size};
-                setrlimit(RLIMIT_FSIZE, &limit);
-            }
-            if (limits.no_rights && getuid() == 0 && setuid(nobody) != 0) _exit(126);
-            execvp(pointers[0], pointers.data());
-            _exit(127);
-        }
-        return child;
+    [[nodiscard]] pid_t start(const Words& words, const Limits& limits = {}) const {
+        return process::start(words, folder_ / ".out", folder_ / ".out", limits);
     }
-    /// Exit code, or -1 when a signal ended it.
-    static int finish(pid_t child) {
-        int status = 0;
-        EXPECT_EQ(waitpid(child, &status, 0), child);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    [[nodiscard]] int run(const Words& words, const Limits& limits = {}) const {
+        return process::finish(start(words, limits));
     }
-    int run(const std::vector<std::string>& words, Limits limits = {}) { return finish(start(words, limits)); }
-    std::string output() { return contents(folder_ / ".out"); }
+    [[nodiscard]] std::string output() const { return contents(folder_ / ".out"); }
+    void expect_one_line() const { EXPECT_EQ(output().find('\n'), output().size() - 1) << output(); }
 
-    static std::vector<std::string> sweep(const std::string& scene, const fs::path& out, bool resume = false,
-                                          const std::string& solver = "proof") {
+    static Words sweep(const std::string& scene, const fs::path& out, bool resume = false,
+                       const std::string& solver = "proof") {
         // Free patterns too, which take solvers some time.
-        std::vector<std::string> words{NSMA_PROGRAM, "sweep",       scene,      "--out", out.string(),
-                                       "--quiet",    "--all-kinds", "--solver", solver};
-        if (resume) words.emplace_back("--resume");
-        return words;
+        return with({NSMA_PROGRAM, "sweep", scene, "--out", out.string(), "--quiet", "--all-kinds", "--solver", solver},
+                    resume ? Words{"--resume"} : Words{});
     }
     /// Sanitized ranks do not look for leaks: OpenMPI leaks in components that are unloaded before the report, so that
     /// no suppression can name them. The same sweep alone does look.
-    static std::vector<std::string> ranks(int count, const std::vector<std::string>& words) {
+    static Words ranks(int count, const Words& words) {
         const char* given = std::getenv("ASAN_OPTIONS");
-        std::vector<std::string> all{"env",
-                                     "ASAN_OPTIONS=" + std::string(given == nullptr ? "" : given) + ":detect_leaks=0",
-                                     "OMPI_ALLOW_RUN_AS_ROOT=1",
-                                     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
-                                     "mpirun",
-                                     "--oversubscribe",
-                                     "-n",
-                                     std::to_string(count)};
-        all.insert(all.end(), words.begin(), words.end());
-        return all;
+        return with({"env", "ASAN_OPTIONS=" + std::string(given == nullptr ? "" : given) + ":detect_leaks=0",
+                     "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "mpirun", "--oversubscribe", "-n",
+                     std::to_string(count)},
+                    words);
     }
 
-    void expect_same(const fs::path& a, const fs::path& b) {
+    static bool has_store(const fs::path& out) {
+        return fs::exists(out / "results.sqlite.part-wal") || fs::exists(out / "results.sqlite");
+    }
+
+    static void expect_same(const fs::path& a, const fs::path& b) {
         for (const char* name : {"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl"}) {
             EXPECT_EQ(contents(a / name), contents(b / name)) << name;
             EXPECT_FALSE(contents(a / name).empty()) << name;
@@ -131,9 +71,7 @@ protected:
                 {"nearest", "proof", "[1.6, 3.0, 12.0]"}};
     }
 
-    static constexpr uid_t nobody = 65534;
-    fs::path folder_;
-    std::string scene_;
+    const std::string scene_ = write_scene("scene.toml", "least-shock", "[1.6, 3.0, 12.0]");
 };
 
 TEST_F(SweepProcess, KilledAtTwentyRandomMomentsItGoesOnToTheSameTables) {
@@ -152,7 +90,7 @@ TEST_F(SweepProcess, KilledAtTwentyRandomMomentsItGoesOnToTheSameTables) {
             const pid_t child = start(sweep(scene, out, true, solver));
             std::this_thread::sleep_for(share(random) * length / 3);
             kill(child, SIGKILL);
-            (void)finish(child);
+            (void)process::finish(child);
         }
         EXPECT_EQ(run(sweep(scene, out, true, solver)), code) << output();
         expect_same(out, whole);
@@ -196,17 +134,14 @@ TEST_F(SweepProcess, ALostRankLosesNothingThatWasStored) {
         const fs::path out = folder_ / (all ? "all" : "one");
         const pid_t child = start(ranks(2, sweep(scene_, out)));
         // A minute at most for the store to be there; then every process at once, or the last rank alone, is killed.
-        for (int i = 0; i < 1200 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite");
-             ++i) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        }
+        wait_for([&] { return has_store(out); }, 60);
         const auto started = children_of(child);
         if (all || started.empty()) {
             kill(-child, SIGKILL);
         } else {
             kill(started.back(), SIGKILL);
         }
-        if (finish(child) == 127) GTEST_SKIP() << "no mpirun here";
+        if (process::finish(child) == 127) GTEST_SKIP() << "no mpirun here";
         // The ranks see that mpirun is gone and end.
         int resumed = 2;
         for (int i = 0; i < 100 && resumed == 2; ++i) {
@@ -227,13 +162,10 @@ TEST_F(SweepProcess, AWarningOfTheTimeLimitEndsRanksInOrder) {
     const int code = run(sweep(scene, alone, false, "both"));
     const fs::path out = folder_ / "out";
     const pid_t child = start(ranks(2, sweep(scene, out, false, "both")));
-    for (int i = 0; i < 6000 && !fs::exists(out / "results.sqlite.part-wal") && !fs::exists(out / "results.sqlite");
-         ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
+    wait_for([&] { return has_store(out); }, 60);
     const bool was_done = fs::exists(out / "results.sqlite");
     kill(child, SIGUSR1);
-    const int ended = finish(child);
+    const int ended = process::finish(child);
     if (ended == 127) GTEST_SKIP() << "no mpirun here";
     EXPECT_EQ(ended, was_done ? code : 130) << output();
     EXPECT_TRUE(fs::exists(out / "levels.csv")) << output();
@@ -248,7 +180,7 @@ TEST_F(SweepProcess, AFullDiskLeavesAStoreToGoOnWith) {
     // Room for the tables of the store and some rows of it.
     EXPECT_EQ(run(sweep(scene_, out), {.file_size = 150'000}), 2) << output();
     EXPECT_NE(output().find((out / "results.sqlite").string()), std::string::npos) << output();
-    EXPECT_EQ(output().find('\n'), output().size() - 1) << output();
+    expect_one_line();
     EXPECT_EQ(run(sweep(scene_, out, true)), code) << output();
     expect_same(out, whole);
 }
@@ -264,13 +196,12 @@ TEST_F(SweepProcess, AReadOnlyFolderIsRefusedAndKept) {
                     fs::perm_options::add);
     for (const auto& place : {out / "charts", out}) fs::permissions(place, shut, fs::perm_options::remove);
     for (const auto& words : {sweep(scene_, out), sweep(scene_, out, true), sweep(scene_, out / "new"),
-                              std::vector<std::string>{NSMA_PROGRAM, "export", out.string()},
-                              std::vector<std::string>{NSMA_PROGRAM, "plot", out.string()}}) {
+                              Words{NSMA_PROGRAM, "export", out.string()}, Words{NSMA_PROGRAM, "plot", out.string()}}) {
         const int refused = run(words, {.no_rights = true});
         if (refused == 126 || refused == 127) GTEST_SKIP() << "no other user, or none who reaches the program";
         EXPECT_EQ(refused, 2) << words[1] << ": " << output();
         EXPECT_NE(output().find(out.string()), std::string::npos) << output();
-        EXPECT_EQ(output().find('\n'), output().size() - 1) << output();
+        expect_one_line();
     }
     EXPECT_EQ(contents(out / "results.sqlite"), store);
     for (const auto& place : {out / "charts", out})
@@ -287,9 +218,9 @@ TEST_F(SweepProcess, RefusalsAreOneLine) {
     EXPECT_NE(output().find("holds results of another scene"), std::string::npos) << output();
     EXPECT_EQ(run(sweep(scene_, out, true, "nlopt")), 2);
     EXPECT_NE(output().find("options: expected solver nlopt"), std::string::npos) << output();
-    EXPECT_EQ(output().find('\n'), output().size() - 1);
+    expect_one_line();
     EXPECT_EQ(run({NSMA_PROGRAM, "export", (folder_ / "nothing").string()}), 2);
-    EXPECT_EQ(output().find('\n'), output().size() - 1);
+    expect_one_line();
 }
 
 }  // namespace
