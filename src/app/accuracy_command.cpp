@@ -20,16 +20,14 @@ int run_accuracy(const Arguments& arguments, const std::atomic<bool>& stop) {
                                      name(scene.objective)));
     }
     AccuracyFolder folder(arguments.out, scene);
-    bool whole = false;
-    {
-        Progress progress("accuracy", arguments.quiet);
-        whole = accuracy(
-            scene, arguments.quick, [&](const AccuracyRecord& record) { folder.add(record); },
-            [&](long done, long total) {
-                progress.show(done, total);
-                return !stop.load();
-            });
-    }
+    Progress progress("accuracy", arguments.quiet);
+    const bool whole = accuracy(
+        scene, arguments.quick, [&](const AccuracyRecord& record) { folder.add(record); },
+        [&](long done, long total) {
+            progress.show(done, total);
+            return !stop.load();
+        });
+    progress.clear();
     if (!whole) {
         fmt::print("interrupted: the rows so far are in {} as .part files\n", arguments.out);
         return exit_interrupted;
