@@ -1,5 +1,6 @@
 #include "certificate_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <set>
@@ -16,30 +17,51 @@ namespace {
 // Fields keep their order, so that equal certificates are equal bytes.
 using Json = nlohmann::ordered_json;
 constexpr int format_version = 2;
-constexpr std::array<std::pair<Certificate::Claim, const char*>, 3> claims{{
-    {Certificate::Claim::trivial, "trivial"},
-    {Certificate::Claim::empty, "empty"},
-    {Certificate::Claim::nonempty, "nonempty"},
-}};
+constexpr std::array claim_names{"trivial", "empty", "nonempty"};  // by Claim
 
-Json vector_json(const RationalVector& vector) {
+// Visits the fields of a certificate in the order of the file.
+template <class Fields, class Visitor>
+void for_each_field(Fields& certificate, Visitor&& visit) {
+    visit("cells", certificate.pattern.cells);
+    visit("free_steps", certificate.pattern.free_steps);
+    visit("contact_steps", certificate.pattern.contact_steps);
+    visit("gap_sign", certificate.gap_sign);
+    visit("claim", certificate.claim);
+    visit("kind", certificate.kind);
+    visit("energy_least", certificate.energy_least);
+    visit("energy_attained", certificate.energy_attained);
+    visit("energy_bound", certificate.energy_bound);
+    visit("projection", certificate.projection);
+    visit("rest", certificate.rest);
+    visit("ray", certificate.ray);
+    visit("greatest", certificate.greatest);
+    visit("chain", certificate.greatest_proof.chain);
+    visit("chain_bounds", certificate.greatest_proof.chain_bounds);
+}
+
+Json json_of(int value) { return value; }
+Json json_of(const Rational& value) { return to_string(value); }
+Json json_of(PatternKind kind) { return name(kind); }
+Json json_of(Certificate::Claim claim) { return claim_names.at(static_cast<std::size_t>(claim)); }
+Json json_of(const std::pair<int, Rational>& entry) { return {entry.first, to_string(entry.second)}; }
+
+Json json_of(const FormBound& bound);
+
+template <class Entry>
+Json json_of(const std::vector<Entry>& entries) {
     Json list = Json::array();
-    for (const auto& [index, value] : vector) list.push_back({index, to_string(value)});
+    for (const Entry& entry : entries) list.push_back(json_of(entry));
     return list;
 }
 
-Json combination_json(const RowCombination& combination) {
-    return {{"rows", vector_json(combination.rows)}, {"contact", to_string(combination.contact)}};
+Json json_of(const FormBound& bound) {
+    return {
+        {"form", json_of(bound.form)}, {"rows", json_of(bound.proof.rows)}, {"contact", json_of(bound.proof.contact)}};
 }
 
-Json bounds_json(const std::vector<FormBound>& bounds) {
-    Json list = Json::array();
-    for (const auto& bound : bounds) {
-        Json entry{{"form", vector_json(bound.form)}};
-        entry.update(combination_json(bound.proof));
-        list.push_back(std::move(entry));
-    }
-    return list;
+template <class Value>
+Json json_of(const std::optional<Value>& value) {
+    return value ? json_of(*value) : Json();
 }
 
 // Reads the fields of one object, each once, and finds those that nobody asked for.
@@ -57,6 +79,13 @@ public:
                                   "expected " + expected + ", got " + text));
     }
 
+    void operator()(const char* key, int& value) { read(required(key), key, value); }
+    void operator()(const char* key, Certificate::Claim& claim) { read(required(key), key, claim); }
+    template <class Value>
+    void operator()(const char* key, Value& value) {
+        if (const Json* json = optional(key)) read(*json, key, value);
+    }
+
     [[nodiscard]] const Json* optional(const char* key) {
         known_.insert(key);
         const auto found = json_.find(key);
@@ -68,50 +97,6 @@ public:
         return *found;
     }
 
-    [[nodiscard]] int integer(const char* key) { return integer(required(key), key); }
-    [[nodiscard]] int integer(const Json& value, const char* key) const {
-        if (!value.is_number_integer()) fail("a whole number", value, key);
-        const bool fits = value.is_number_unsigned() ? value.get<std::uint64_t>() <=
-                                                           static_cast<std::uint64_t>(std::numeric_limits<int>::max())
-                                                     : value.get<std::int64_t>() >= std::numeric_limits<int>::min();
-        if (!fits) fail("a whole number of 32 bits", value, key);
-        return value.get<int>();
-    }
-    [[nodiscard]] Rational fraction(const Json& value, const char* key) const {
-        if (!value.is_string()) fail("a fraction as text", value, key);
-        const auto read = parse_rational(value.get<std::string>());
-        if (!read) fail("a fraction such as \"-12/11\"", value, key);
-        return *read;
-    }
-    [[nodiscard]] const Json& list(const Json& value, const char* key) const {
-        if (!value.is_array()) fail("a list", value, key);
-        return value;
-    }
-    [[nodiscard]] RationalVector vector(const Json& value, const char* key) const {
-        RationalVector result;
-        for (const auto& entry : list(value, key)) {
-            if (!entry.is_array() || entry.size() != 2) fail("a pair [index, \"fraction\"]", entry, key);
-            result.emplace_back(integer(entry[0], key), fraction(entry[1], key));
-        }
-        return result;
-    }
-    [[nodiscard]] RowCombination combination() {
-        return {vector(required("rows"), "rows"), fraction(required("contact"), "contact")};
-    }
-    [[nodiscard]] std::vector<FormBound> bounds(const char* key) {
-        std::vector<FormBound> result;
-        const Json* value = optional(key);
-        if (value == nullptr) return result;
-        for (const auto& entry : list(*value, key)) {
-            Reader reader(entry, where_ + ": " + key);
-            FormBound bound;
-            bound.form = reader.vector(reader.required("form"), "form");
-            bound.proof = reader.combination();
-            reader.finish();
-            result.push_back(std::move(bound));
-        }
-        return result;
-    }
     void finish() const {
         for (const auto& [key, value] : json_.items()) {
             if (!known_.contains(key)) fail("no such field", value, key.c_str());
@@ -119,6 +104,53 @@ public:
     }
 
 private:
+    void read(const Json& json, const char* key, int& value) const {
+        if (!json.is_number_integer()) fail("a whole number", json, key);
+        const bool fits = json.is_number_unsigned()
+                              ? json.get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<int>::max())
+                              : json.get<std::int64_t>() >= std::numeric_limits<int>::min();
+        if (!fits) fail("a whole number of 32 bits", json, key);
+        value = json.get<int>();
+    }
+    void read(const Json& json, const char* key, Rational& value) const {
+        if (!json.is_string()) fail("a fraction as text", json, key);
+        const auto known = parse_rational(json.get<std::string>());
+        if (!known) fail("a fraction such as \"-12/11\"", json, key);
+        value = *known;
+    }
+    void read(const Json& json, const char* key, Certificate::Claim& claim) const {
+        const auto* known = std::find_if(claim_names.begin(), claim_names.end(), [&](auto one) { return json == one; });
+        if (known == claim_names.end()) fail("trivial, empty or nonempty", json, key);
+        claim = static_cast<Certificate::Claim>(known - claim_names.begin());
+    }
+    void read(const Json& json, const char* key, PatternKind& kind) const {
+        const auto* known =
+            std::find_if(pattern_kinds.begin(), pattern_kinds.end(), [&](auto one) { return json == name(one); });
+        if (known == pattern_kinds.end()) fail("contact, free or stuck", json, key);
+        kind = *known;
+    }
+    void read(const Json& json, const char* key, std::pair<int, Rational>& entry) const {
+        if (!json.is_array() || json.size() != 2) fail("a pair [index, \"fraction\"]", json, key);
+        read(json[0], key, entry.first);
+        read(json[1], key, entry.second);
+    }
+    void read(const Json& json, const char* key, FormBound& bound) const {
+        Reader reader(json, where_ + ": " + key);
+        reader.read(reader.required("form"), "form", bound.form);
+        reader.read(reader.required("rows"), "rows", bound.proof.rows);
+        reader.read(reader.required("contact"), "contact", bound.proof.contact);
+        reader.finish();
+    }
+    template <class Value>
+    void read(const Json& json, const char* key, std::optional<Value>& value) const {
+        read(json, key, value.emplace());
+    }
+    template <class Entry>
+    void read(const Json& json, const char* key, std::vector<Entry>& entries) const {
+        if (!json.is_array()) fail("a list", json, key);
+        for (const Json& entry : json) read(entry, key, entries.emplace_back());
+    }
+
     const Json& json_;
     std::string where_;
     std::set<std::string> known_;
@@ -127,31 +159,12 @@ private:
 }  // namespace
 
 std::string certificate_json(const Certificate& certificate) {
-    Json json{{"certificate", format_version},
-              {"cells", certificate.pattern.cells},
-              {"free_steps", certificate.pattern.free_steps},
-              {"contact_steps", certificate.pattern.contact_steps},
-              {"gap_sign", certificate.gap_sign}};
-    for (const auto& [claim, text] : claims) {
-        if (claim == certificate.claim) json["claim"] = text;
-    }
-    if (certificate.kind) json["kind"] = name(*certificate.kind);
-    const auto add_energy = [&](const char* key, const std::optional<Rational>& energy) {
-        if (energy) json[key] = to_string(*energy);
+    Json json{{"certificate", format_version}};
+    const auto write = [&json](const char* key, const auto& value) {
+        Json field = json_of(value);
+        if (!field.empty()) json[key] = std::move(field);  // nothing for null and empty lists
     };
-    add_energy("energy_least", certificate.energy_least);
-    add_energy("energy_attained", certificate.energy_attained);
-    add_energy("energy_bound", certificate.energy_bound);
-    const auto add = [&](const char* key, Json list) {
-        if (!list.empty()) json[key] = std::move(list);
-    };
-    add("projection", vector_json(certificate.projection));
-    add("rest", bounds_json(certificate.rest));
-    add("ray", vector_json(certificate.ray));
-    add("greatest", vector_json(certificate.greatest));
-    const auto& proof = certificate.greatest_proof;
-    add("chain", Json(proof.chain));
-    add("chain_bounds", bounds_json(proof.chain_bounds));
+    for_each_field(certificate, write);
     return json.dump();
 }
 
@@ -161,45 +174,11 @@ Certificate parse_certificate(std::string_view text, const std::string& where) {
         throw InputError(where + ": expected one JSON object a line, got something else");
     }
     Reader reader(json, where);
+    int version = 0;
+    reader("certificate", version);
+    if (version != format_version) reader.fail(std::to_string(format_version), json["certificate"], "certificate");
     Certificate certificate;
-    if (const int version = reader.integer("certificate"); version != format_version) {
-        reader.fail(std::to_string(format_version), json["certificate"], "certificate");
-    }
-    certificate.pattern = {reader.integer("cells"), reader.integer("free_steps"), reader.integer("contact_steps")};
-    certificate.gap_sign = reader.integer("gap_sign");
-    const Json& claim = reader.required("claim");
-    bool known = false;
-    for (const auto& [value, name] : claims) {
-        if (claim.is_string() && claim.get<std::string>() == name) {
-            certificate.claim = value;
-            known = true;
-        }
-    }
-    if (!known) reader.fail("trivial, empty or nonempty", claim, "claim");
-    if (const Json* kind = reader.optional("kind")) {
-        for (const PatternKind one : pattern_kinds) {
-            if (kind->is_string() && kind->get<std::string>() == name(one)) certificate.kind = one;
-        }
-        if (!certificate.kind) reader.fail("contact, free or stuck", *kind, "kind");
-    }
-    const auto energy = [&](const char* key, std::optional<Rational>& target) {
-        if (const Json* value = reader.optional(key)) target = reader.fraction(*value, key);
-    };
-    energy("energy_least", certificate.energy_least);
-    energy("energy_attained", certificate.energy_attained);
-    energy("energy_bound", certificate.energy_bound);
-    const auto vector = [&](const char* key, RationalVector& target) {
-        if (const Json* value = reader.optional(key)) target = reader.vector(*value, key);
-    };
-    vector("projection", certificate.projection);
-    vector("ray", certificate.ray);
-    vector("greatest", certificate.greatest);
-    certificate.rest = reader.bounds("rest");
-    auto& proof = certificate.greatest_proof;
-    proof.chain_bounds = reader.bounds("chain_bounds");
-    if (const Json* chain = reader.optional("chain")) {
-        for (const auto& entry : reader.list(*chain, "chain")) proof.chain.push_back(reader.integer(entry, "chain"));
-    }
+    for_each_field(certificate, reader);
     reader.finish();
     return certificate;
 }
