@@ -30,11 +30,6 @@ struct Reference {
         const auto step = std::min(static_cast<Eigen::Index>(place), tips.size() - 2);
         return tips[step] + (place - static_cast<double>(step)) * (tips[step + 1] - tips[step]);
     }
-    // Coordinates [sigma/z; v] of a state, in which the norm is that of energy.
-    [[nodiscard]] Eigen::VectorXd scaled(State any) const {
-        any.head(pattern().cells) /= bar().impedance();
-        return any;
-    }
 };
 
 // The first nonsmooth mode on N = 5 j cells.
@@ -83,29 +78,29 @@ Marched march_queue(const Reference& reference, int periods) {
 // Marches that are told the contact steps: the state after so many periods.
 using Advance = State (*)(const Reference&, int periods);
 
+template <typename Step>
+void each_step(const Pattern& pattern, int periods, const Step& step) {
+    for (int k = 0; k < periods; ++k) {
+        for (int n = 0; n < pattern.period_steps(); ++n) step(n >= pattern.free_steps);
+    }
+}
+
 State by_cells(const Reference& reference, int periods) {
     State state = reference.state;
-    const Pattern& pattern = reference.pattern();
-    for (int k = 0; k < periods; ++k) {
-        for (int n = 0; n < pattern.period_steps(); ++n) {
-            dense::cell_step(reference.bar(), reference.orbit.mesh(), n >= pattern.free_steps, state);
-        }
-    }
+    each_step(reference.pattern(), periods,
+              [&](bool contact) { dense::cell_step(reference.bar(), reference.orbit.mesh(), contact, state); });
     return state;
 }
 
 State by_repeated_products(const Reference& reference, int periods) {
     const Eigen::MatrixXd flight = dense::free_step_matrix(reference.bar(), reference.orbit.mesh());
-    const Eigen::MatrixXd contact = dense::contact_step_matrix(reference.bar(), reference.orbit.mesh());
+    const Eigen::MatrixXd held = dense::contact_step_matrix(reference.bar(), reference.orbit.mesh());
     State state = reference.state;
     State next(state.size());
-    const Pattern& pattern = reference.pattern();
-    for (int k = 0; k < periods; ++k) {
-        for (int n = 0; n < pattern.period_steps(); ++n) {
-            next.noalias() = (n < pattern.free_steps ? flight : contact) * state;
-            state = next;
-        }
-    }
+    each_step(reference.pattern(), periods, [&](bool contact) {
+        next.noalias() = (contact ? held : flight) * state;
+        state = next;
+    });
     return state;
 }
 
@@ -133,10 +128,9 @@ Marched march_told(const Reference& reference, Advance advance, int periods) {
     marched.seconds = cpu_seconds_of([&] { end = advance(reference, periods); });
     const double tip = tip_displacement(reference.bar(), reference.orbit.mesh(), end);
     marched.tip_error = std::abs(tip - reference.tips[0]) / reference.bar().displacement_unit();
-    const Eigen::VectorXd before = reference.scaled(reference.state);
-    const Eigen::VectorXd after = reference.scaled(end);
-    marched.energy_drift = std::abs(after.squaredNorm() / before.squaredNorm() - 1.0);
-    marched.periodicity_defect = (after - before).norm() / before.norm();
+    const auto energy_of = [&](const State& state) { return energy(reference.bar(), reference.orbit.mesh(), state); };
+    marched.energy_drift = std::abs(energy_of(end) / energy_of(reference.state) - 1.0);
+    marched.periodicity_defect = std::sqrt(energy_of(end - reference.state) / energy_of(reference.state));
     return marched;
 }
 

@@ -1,11 +1,12 @@
+#include <cmath>
 #include <optional>
 #include <random>
 
 #include <fmt/format.h>
 
 #include "accuracy_parts.hpp"
-#include "posed_programs.hpp"
 #include "program_methods.hpp"
+#include "nsma/orbit/conditions.hpp"
 
 namespace nsma {
 namespace {
@@ -53,7 +54,7 @@ std::vector<Place> places(bool quick) {
 // One column of a map: how a program is posed and where each run begins.
 struct Difficulty {
     std::string what;
-    const Program* posed;
+    Program posed;
     std::vector<Eigen::VectorXd> starts;
 };
 
@@ -70,7 +71,7 @@ void study_map(AccuracyRun& run, const char* map, const ProgramCase& on, const s
             std::vector<Trial> trials;
             std::vector<double> seconds;
             for (const Eigen::VectorXd& start : difficulty.starts) {
-                trials.push_back(runner.run(on, *difficulty.posed, start));
+                trials.push_back(runner.run(on, difficulty.posed, start));
                 seconds.push_back(trials.back().seconds);
                 if (method.whole() && whole_runs == WholeRuns::one) break;
             }
@@ -99,7 +100,7 @@ void level_map(AccuracyRun& run) {
             const double level = place.level(problem.interval.least.value(), problem.interval.greatest.value());
             const ProgramCase on = solved_case(bar, problem, run.scene.objective, level);
             std::mt19937_64 generator(1);
-            Difficulty difficulty{place.label(), &on.program.program, {on.program.point(on.points.start(0).value())}};
+            Difficulty difficulty{place.label(), on.program.program, {on.program.point(on.points.start(0).value())}};
             for (int k = 1; k < run.sizes.starts; ++k) {
                 difficulty.starts.push_back(random_unit(on.best_x.size(), generator));
             }
@@ -116,7 +117,7 @@ std::vector<Difficulty> far_starts(const ProgramCase& on, bool quick) {
     std::vector<Difficulty> difficulties;
     for (const double radius : radii) {
         std::mt19937_64 generator(difficulties.size() + 1);
-        Difficulty difficulty{fmt::format("{:g}", radius), &on.program.program, {}};
+        Difficulty difficulty{fmt::format("{:g}", radius), on.program.program, {}};
         for (int k = 0; k < (quick ? 2 : 8); ++k) {
             difficulty.starts.push_back(on.best_x + radius * random_unit(on.best_x.size(), generator));
         }
@@ -125,14 +126,104 @@ std::vector<Difficulty> far_starts(const ProgramCase& on, bool quick) {
     return difficulties;
 }
 
-// Programs posed otherwise, from the starts of the default path.
-std::vector<Difficulty> from_usual_starts(const ProgramCase& on, const std::vector<PosedProgram>& posed, int starts) {
-    std::vector<Eigen::VectorXd> usual;
-    for (int k = 0; k < starts; ++k) {
-        if (const auto gamma = on.points.start(k)) usual.push_back(on.program.point(*gamma));
+std::vector<Eigen::VectorXd> usual_starts(const ProgramCase& on, int count) {
+    std::vector<Eigen::VectorXd> starts;
+    for (int k = 0; k < count; ++k) {
+        if (const auto gamma = on.points.start(k)) starts.push_back(on.program.point(*gamma));
     }
+    return starts;
+}
+
+// The program as a careless caller would pose it. First: objective and linear rows in units 10^k of their own; the
+// sphere keeps its unit radius.
+std::vector<Difficulty> scaled_programs(const ProgramCase& on, const std::vector<Eigen::VectorXd>& starts, bool quick) {
+    const std::vector<int> powers = quick ? std::vector{-6, 6} : std::vector{-12, -9, -6, -3, 0, 3, 6, 9, 12};
     std::vector<Difficulty> difficulties;
-    for (const PosedProgram& one : posed) difficulties.push_back({one.what, &one.program, usual});
+    for (const int power : powers) {
+        const double unit = std::pow(10.0, power);
+        Program posed = on.program.program;
+        posed.hessian *= unit;
+        posed.gradient *= unit;
+        posed.constant *= unit;
+        posed.equalities *= unit;
+        posed.equality_values *= unit;
+        posed.inequalities *= unit;
+        posed.inequality_values *= unit;
+        difficulties.push_back({fmt::format("1e{}", power), posed, starts});
+    }
+    return difficulties;
+}
+
+// Puts more rows below those of a constraint.
+void append(SparseRows& rows, Eigen::VectorXd& values, const Eigen::MatrixXd& more,
+            const Eigen::VectorXd& more_values) {
+    Eigen::MatrixXd all_rows(rows.rows() + more.rows(), more.cols());
+    all_rows << Eigen::MatrixXd(rows), more;
+    rows = all_rows.sparseView();
+    Eigen::VectorXd all_values(values.size() + more_values.size());
+    all_values << values, more_values;
+    values = all_values;
+}
+
+// COND2 once for each of the p contact steps and n = 0.
+void repeat_contact(const ProgramCase& on, Program& program) {
+    if (program.equalities.rows() == 0) return;
+    const Eigen::MatrixXd row = Eigen::MatrixXd(program.equalities).topRows(1);
+    const int times = on.problem.kernel.pattern.contact_steps;
+    append(program.equalities, program.equality_values, row.replicate(times, 1),
+           program.equality_values.head(1).replicate(times, 1));
+}
+
+// COND3 at each contact step as a row -gamma_j <= 0 in place of the bound.
+void force_rows(const ProgramCase& on, Program& program) {
+    const Kernel& kernel = on.problem.kernel;
+    const Reduction& reduction = on.problem.set.reduction;
+    std::vector<Eigen::Index> columns;
+    for (int n = kernel.pattern.free_steps; n < kernel.pattern.period_steps(); ++n) {
+        for (int j = 0; j < reduction.variables(); ++j) {
+            if (reduction.column[static_cast<std::size_t>(j)] == kernel.column(n)) columns.push_back(j);
+        }
+    }
+    const auto count = static_cast<Eigen::Index>(columns.size());
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count, program.variables());
+    for (Eigen::Index i = 0; i < count; ++i) rows(i, columns[static_cast<std::size_t>(i)]) = -1.0;
+    append(program.inequalities, program.inequality_values, rows, Eigen::VectorXd::Zero(count));
+    program.lower.head(reduction.variables()).setConstant(-no_bound);
+}
+
+// COND1 x_n <= delta at each step of the free flight, silent and implied ones too.
+void flight_rows(const ProgramCase& on, Program& program) {
+    const Reduction& reduction = on.problem.set.reduction;
+    const Eigen::MatrixXi tips = tip_rows(on.problem.kernel);
+    const int count = on.problem.kernel.pattern.free_steps - 1;
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count, program.variables());
+    Eigen::VectorXd values(count);
+    for (int n = 0; n < count; ++n) {
+        for (int j = 0; j < reduction.variables(); ++j) {
+            const auto k = static_cast<std::size_t>(j);
+            rows(n, j) = reduction.flip[k] * tips(n + 1, reduction.column[k]);
+        }
+        const double norm = std::max(rows.row(n).norm(), 1.0);
+        rows.row(n) /= norm;
+        values[n] = reduction.gap_sign / (norm * on.program.scale);
+    }
+    append(program.inequalities, program.inequality_values, rows, values);
+}
+
+// Rows that presolve removes, put back: one kind at a time, then all of them.
+std::vector<Difficulty> redundant_programs(const ProgramCase& on, const std::vector<Eigen::VectorXd>& starts) {
+    using Change = void (*)(const ProgramCase&, Program&);
+    const std::vector<std::pair<const char*, std::vector<Change>>> variants{
+        {"presolved", {}},
+        {"COND2 repeated", {repeat_contact}},
+        {"COND3 as rows", {force_rows}},
+        {"all COND1 rows", {flight_rows}},
+        {"all of them", {repeat_contact, force_rows, flight_rows}}};
+    std::vector<Difficulty> difficulties;
+    for (const auto& [what, changes] : variants) {
+        difficulties.push_back({what, on.program.program, starts});
+        for (const Change change : changes) change(on, difficulties.back().posed);
+    }
     return difficulties;
 }
 
@@ -148,13 +239,12 @@ void study_stability(AccuracyRun& run) {
         const PatternProblem problem = pattern_problem(pattern, bar.gap_sign());
         const ProgramCase on =
             solved_case(bar, problem, run.scene.objective, level.value_or(easy_level * problem.interval.least.value()));
-        const auto scaled = scaled_programs(on.program.program, run.quick);
-        const auto redundant = redundant_programs(on);
+        const auto starts = usual_starts(on, run.sizes.starts);
         study_map(run, "start", on, far_starts(on, run.quick));
         ++run.done;
-        study_map(run, "units", on, from_usual_starts(on, scaled, run.sizes.starts));
+        study_map(run, "units", on, scaled_programs(on, starts, run.quick));
         ++run.done;
-        study_map(run, "rows", on, from_usual_starts(on, redundant, run.sizes.starts));
+        study_map(run, "rows", on, redundant_programs(on, starts));
         ++run.done;
     }
 }

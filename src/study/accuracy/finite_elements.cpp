@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 namespace nsma {
 namespace {
 
-void expect(bool good, const char* name, const char* expected, double got) {
-    if (good) return;
-    throw std::invalid_argument(std::string(name) + ": expected " + expected + ", got " + std::to_string(got));
-}
+constexpr double theta = 0.5;  // of the implicit scheme: the trapezoidal rule, which dissipates nothing in free motion
 
 // Integral of a function that is constant on each of `values.size()` equal cells of [0, 1] over
 // [from, to].
@@ -35,13 +30,6 @@ FiniteElementBar::FiniteElementBar(const Bar& bar, const Mesh& mesh, const State
     : options_(options), gap_(bar.gap) {
     validate(bar);
     validate(mesh, state);
-    expect(options.elements >= 1, "elements", ">= 1", options.elements);
-    expect(options.courant > 0, "courant", "> 0", options.courant);
-    expect(options.penalty > 0, "penalty", "> 0", options.penalty);
-    expect(options.restitution >= 0 && options.restitution <= 1, "restitution", "0..1", options.restitution);
-    expect(options.theta >= 0.5 && options.theta <= 1, "theta", "0.5..1", options.theta);
-    expect(duration > 0 && std::isfinite(duration), "duration", "a finite number > 0", duration);
-
     const int n = options.elements;
     const double h = bar.length / n;
     stiffness_ = bar.young_modulus * bar.area / h;
@@ -96,7 +84,7 @@ Eigen::VectorXd FiniteElementBar::acceleration() const {
 
 void FiniteElementBar::factorise() {
     const auto n = mass_.size();
-    const double factor = options_.theta * options_.theta * time_step_ * time_step_ * stiffness_;
+    const double factor = theta * theta * time_step_ * time_step_ * stiffness_;
     pivot_.resize(n);
     ratio_.setZero(n);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -132,7 +120,7 @@ void FiniteElementBar::step() {
     // with 0 <= P _|_ wall speed after the impact, where the tip is forecast to be at the wall.
     const auto last = velocity_.size() - 1;
     const double before = velocity_[last];
-    Eigen::VectorXd after = velocity_ + solve(dt * elastic_force(displacement_ + options_.theta * dt * velocity_));
+    Eigen::VectorXd after = velocity_ + solve(dt * elastic_force(displacement_ + theta * dt * velocity_));
     contact_ = false;
     if (tip() + 0.5 * dt * before >= gap_) {
         const double excess = after[last] + options_.restitution * before;
@@ -141,7 +129,7 @@ void FiniteElementBar::step() {
             after -= tip_response_ * (excess / tip_response_[last]);
         }
     }
-    displacement_ += dt * (options_.theta * after + (1 - options_.theta) * velocity_);
+    displacement_ += dt * (theta * after + (1 - theta) * velocity_);
     velocity_ = after;
 }
 

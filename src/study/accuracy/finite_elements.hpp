@@ -19,7 +19,6 @@ struct FiniteElementOptions {
     double courant = 0.9;      ///< c dt/h, > 0; central differences are stable up to 1 in free motion
     double penalty = 1.0;      ///< wall stiffness in units Y S/h, > 0; stable to c dt/h = 0.91 at 1, 0.42 at 10
     double restitution = 0.0;  ///< Newton's e in [0, 1]
-    double theta = 0.5;        ///< in [1/2, 1]; 1/2 dissipates nothing in free motion
 };
 
 /// A bar of finite elements that marches from a state of the wave method.
@@ -29,7 +28,7 @@ class FiniteElementBar {
 public:
     /// Displacements of Q at the nodes, exact; velocities averaged over each node's share of the
     /// mass, so that momentum is kept. `duration` [s] is cut into a whole number of steps.
-    /// Throws std::invalid_argument (name, expected, got) on a bad option, state or duration.
+    /// Throws std::invalid_argument on a bad bar or state.
     FiniteElementBar(const Bar& bar, const Mesh& mesh, const State& state, double duration,
                      const FiniteElementOptions& options = {});
 

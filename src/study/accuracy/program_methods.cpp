@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "guarded_solver.hpp"
 #include "numerics/polish.hpp"
 #include "search/restore.hpp"
 
@@ -196,8 +195,8 @@ MethodRunner::MethodRunner(const ProgramMethod& method, double time_limit)
 Trial MethodRunner::run(const ProgramCase& on, const Program& posed, const Eigen::VectorXd& start) {
     if (method_.whole()) return run_whole(on);
     Trial trial;
-    const double here = cpu_seconds_of([&] { trial = run_posed(on, posed, start); });
-    trial.seconds += on.pose_seconds + here;  // to those of a child process
+    const double seconds = cpu_seconds_of([&] { trial = run_posed(on, posed, start); });
+    trial.seconds = on.pose_seconds + seconds;
     return trial;
 }
 
@@ -217,7 +216,6 @@ Trial MethodRunner::run_posed(const ProgramCase& on, const Program& posed, const
     const SolverOutcome raw = solve(posed, start);
     const Claim claim = claim_of(raw.status);
     Trial trial;
-    if (method_.derivative_free()) trial.seconds = raw.seconds;
     trial.iterations = raw.iterations;
     trial.reported = claim == Claim::answer;
     if (raw.x.size() != on.program.program.variables() || !raw.x.allFinite()) return trial;
@@ -240,11 +238,7 @@ Trial MethodRunner::run_posed(const ProgramCase& on, const Program& posed, const
 SolverOutcome MethodRunner::solve(const Program& posed, const Eigen::VectorXd& start) {
     if (method_.kind == Kind::segment) return {start, "", 0, 0.0};
     if (method_.kind == Kind::ipopt) return ipopt_.solve(posed, start);
-    const NloptMethod method = nlopt_method(method_.kind);
-    if (method_.derivative_free()) {
-        return solve_guarded(method, posed, start, options_, 2 * options_.time_limit + 1);
-    }
-    return solve_with_nlopt(method, posed, start, options_);
+    return solve_with_nlopt(nlopt_method(method_.kind), posed, start, options_);
 }
 
 }  // namespace nsma

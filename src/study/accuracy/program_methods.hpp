@@ -86,7 +86,7 @@ public:
     explicit MethodRunner(const ProgramMethod& method, double time_limit = 5.0);
 
     /// Poses `posed` (the case's program or a variant over the same unknowns) from `start`, which a whole method does
-    /// not use. COBYLA and ISRES run in a child process, since nothing else ends them for sure.
+    /// not use.
     [[nodiscard]] Trial run(const ProgramCase& on, const Program& posed, const Eigen::VectorXd& start);
 
 private:
