@@ -7,19 +7,6 @@
 #include "report/sensitivity/sensitivity_folder.hpp"
 
 namespace nsma::app {
-namespace {
-
-class WatchedRecords final : public SensitivityRecords {
-public:
-    explicit WatchedRecords(Progress& progress) : progress_(progress) {}
-    void progress(long done, long total) override { progress_.show(done, total); }
-
-private:
-    Progress& progress_;
-};
-
-}  // namespace
-
 int run_sensitivity(const Arguments& arguments, const std::atomic<bool>& stop) {
     const Scene scene = arguments.scene();
     arguments.check_energy(scene, arguments.input + ": objective");
@@ -29,11 +16,12 @@ int run_sensitivity(const Arguments& arguments, const std::atomic<bool>& stop) {
     if (arguments.free_steps > 0) request.pattern = arguments.patterns(scene).front();
     open_sensitivity_folder(arguments.out, scene);
     Progress progress("sensitivity", arguments.quiet);
-    WatchedRecords records(progress);
-    const SensitivitySummary summary = sensitivity(scene, request, records, [&] { return !stop.load(); });
+    const SensitivityRecords records = sensitivity(
+        scene, request, [&] { return !stop.load(); }, [&](long done, long total) { progress.show(done, total); });
+    const SensitivitySummary& summary = records.summary;
     progress.clear();
-    write_sensitivity(arguments.out, scene, records, summary);
-    fmt::print("{}results are in {}\n", sensitivity_text("sensitivity.txt", scene, records, summary), arguments.out);
+    write_sensitivity(arguments.out, scene, records);
+    fmt::print("{}results are in {}\n", sensitivity_text("sensitivity.txt", scene, records), arguments.out);
     if (!summary.interrupted) {
         for (const auto& picture : draw_sensitivity(arguments.out, scene, records))
             fmt::print("chart    {}\n", picture.string());

@@ -1,13 +1,15 @@
 #include "relaxed_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
-#include "numerics/decompositions.hpp"
+#include "tied_optima.hpp"
+#include "numerics/boundary.hpp"
 #include "numerics/linear_program.hpp"
-#include "nsma/set/admissible_set.hpp"
-#include "search/orbit_program.hpp"
+#include "numerics/polish.hpp"
 
 namespace nsma {
 namespace {
@@ -17,8 +19,8 @@ constexpr double activity = 1e-7;
 // The rays and nonzero points sought lie in a unit box over small integer rows.
 constexpr double direction_tolerance = 1e-7;
 constexpr int climb_limit = 50;
-// Vertices of one energy differ by the rounding of sums of small integers.
-constexpr double tie_tolerance = 1e-12;
+// Energies of vertices and lengths of steps differ by rounding only.
+constexpr double rounding = 1e-12;
 
 // The linear rows of a program without bounds on its unknowns, over x = plus - minus with both
 // >= 0: CLP has called points optimal that were not, or cycled, where every unknown was free.
@@ -60,120 +62,94 @@ private:
     LinearSolver solver_;
 };
 
-// Moves a point onto the rows within `tolerance`, so that only rounding is left.
-Eigen::VectorXd onto_rows(const Program& program, Eigen::VectorXd x, double tolerance) {
-    const Eigen::VectorXd slack = program.inequality_values - program.inequalities * x;
-    std::vector<Eigen::Index> active;
-    for (Eigen::Index i = 0; i < slack.size(); ++i) {
-        if (slack[i] <= tolerance) active.push_back(i);
-    }
-    const auto equalities = program.equalities.rows();
-    Eigen::MatrixXd system(equalities + static_cast<Eigen::Index>(active.size()), x.size());
-    Eigen::VectorXd target(system.rows());
-    system.topRows(equalities) = Eigen::MatrixXd(program.equalities);
-    target.head(equalities) = program.equality_values;
-    for (std::size_t k = 0; k < active.size(); ++k) {
-        const auto at = equalities + static_cast<Eigen::Index>(k);
-        system.row(at) = Eigen::RowVectorXd(program.inequalities.row(active[k]));
-        target[at] = program.inequality_values[active[k]];
-    }
-    if (system.rows() == 0) return x;
-    return x + MinimumNorm(system).refined(target - system * x);
-}
-
-// The same with the widest tolerance whose rows do meet in a point of the set: rows a small
-// relaxation apart are not one vertex.
+// Moves a point onto the rows near it, so that only rounding is left: with the widest tolerance whose rows do meet in
+// a point of the set, since rows a small relaxation apart are not one vertex.
 Eigen::VectorXd sharpened(const Program& program, const Eigen::VectorXd& x) {
+    const Boundary boundary(program);
     const double size = 1.0 + x.cwiseAbs().maxCoeff();
     for (const double tolerance : {activity, 1e-2 * activity}) {
-        Eigen::VectorXd moved = onto_rows(program, x, tolerance * size);
+        const Eigen::VectorXd moved = boundary.project(boundary.active(x, tolerance * size), x);
         if (program.violation(moved) <= PolishOptions{}.feasibility * size) return moved;
     }
     return x;
 }
 
-// A nonzero direction within the homogeneous rows, in beta; empty when there is none.
-Eigen::VectorXd recession(const RelaxedProgram& form) {
-    Program cone = form.program;
-    cone.inequality_values.setZero();
-    cone.equality_values.setZero();
-    const auto n = cone.variables();
-    LinearPart solver(cone, 1.0);
+// A point of the rows other than rest, which meets them; empty when there is none.
+Eigen::VectorXd other_than_rest(const Program& program) {
+    const auto n = program.variables();
+    LinearPart solver(program, 1.0);
     for (Eigen::Index j = 0; j < n; ++j) {
         for (const double side : {-1.0, 1.0}) {
-            Eigen::VectorXd cost = Eigen::VectorXd::Zero(n);
-            cost[j] = side;
-            const LinearSolution solution = solver.minimise(cost);
-            if (solution.status != LinearStatus::optimal || solution.value > -direction_tolerance) continue;
-            // Active rows of the box are no part of the cone: only the cone's are sharpened.
-            return form.beta(sharpened(cone, solution.x)).normalized();
+            const LinearSolution solution = solver.minimise(side * Eigen::VectorXd::Unit(n, j));
+            if (solution.status == LinearStatus::optimal && solution.value <= -direction_tolerance) return solution.x;
         }
     }
     return {};
 }
 
-// Vertices reached by climbing the energy along linear programs from fixed directions.
+// A direction in which the set has no end, in beta; empty when there is none.
+Eigen::VectorXd recession(const RelaxedProgram& form) {
+    Program cone = form.program;
+    cone.inequality_values.setZero();
+    cone.equality_values.setZero();
+    const Eigen::VectorXd direction = other_than_rest(cone);
+    if (direction.size() == 0) return direction;
+    // Active rows of the box are no part of the cone: only the cone's are sharpened.
+    return form.beta(sharpened(cone, direction)).normalized();
+}
+
+// Vertices reached by climbing the energy along linear programs from points known and from fixed directions, the
+// greatest energy first.
 class Climber {
 public:
     explicit Climber(const RelaxedProgram& form) : form_(form), solver_(form.program) {}
 
-    void climb(Eigen::VectorXd direction) {
-        double best = -1;
-        for (int step = 0; step < climb_limit; ++step) {
-            const LinearSolution solution = solver_.minimise(-direction);
-            if (solution.status != LinearStatus::optimal) return;
-            Eigen::VectorXd vertex = sharpened(form_.program, solution.x);
-            const double value = vertex.squaredNorm();
-            if (value <= best * (1 + 1e-12)) return;
-            best = value;
-            direction = vertex;
-            keep(std::move(vertex));
+    [[nodiscard]] std::vector<Eigen::VectorXd> vertices(const std::vector<Eigen::VectorXd>& known) {
+        const auto n = form_.program.variables();
+        for (const auto& from : known) {
+            if (from.squaredNorm() > 0) climb(from);
         }
-    }
-
-    [[nodiscard]] std::vector<Eigen::VectorXd> take() {
-        std::stable_sort(found_.begin(), found_.end(),
-                         [](const auto& a, const auto& b) { return a.squaredNorm() > b.squaredNorm() * (1 + 1e-12); });
+        for (Eigen::Index j = 0; j < n; ++j) {
+            for (const double side : {1.0, -1.0}) climb(side * Eigen::VectorXd::Unit(n, j));
+        }
+        for (const int period : {1, 2, 3, 4}) {
+            for (const double side : {1.0, -1.0}) {
+                climb(Eigen::VectorXd::NullaryExpr(
+                    n, [&](Eigen::Index j) { return (j / period) % 2 == 0 ? side : -side; }));
+            }
+        }
+        std::stable_sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) {
+            return a.squaredNorm() > b.squaredNorm() * (1 + rounding);
+        });
         for (auto& x : found_) x *= form_.scale;
         return std::move(found_);
     }
 
 private:
-    void keep(Eigen::VectorXd vertex) {
+    void climb(Eigen::VectorXd direction) {
+        double best = -1;
+        for (int step = 0; step < climb_limit; ++step) {
+            const LinearSolution solution = solver_.minimise(-direction);
+            if (solution.status != LinearStatus::optimal) return;
+            direction = sharpened(form_.program, solution.x);
+            const double value = direction.squaredNorm();
+            if (value <= best * (1 + rounding)) return;
+            best = value;
+            keep(direction);
+        }
+    }
+
+    void keep(const Eigen::VectorXd& vertex) {
         for (const auto& known : found_) {
             if ((known - vertex).norm() <= 1e-9 * (1e-300 + vertex.norm())) return;
         }
-        found_.push_back(std::move(vertex));
+        found_.push_back(vertex);
     }
 
     const RelaxedProgram& form_;
     LinearPart solver_;
     std::vector<Eigen::VectorXd> found_;
 };
-
-// `known`: where to climb from beside fixed directions.
-std::vector<Eigen::VectorXd> climb_all(const RelaxedProgram& form, const std::vector<Eigen::VectorXd>& known) {
-    const auto n = form.program.variables();
-    Climber climber(form);
-    for (const auto& from : known) {
-        if (from.squaredNorm() > 0) climber.climb(from);
-    }
-    for (Eigen::Index j = 0; j < n; ++j) {
-        for (const double side : {1.0, -1.0}) {
-            Eigen::VectorXd direction = Eigen::VectorXd::Zero(n);
-            direction[j] = side;
-            climber.climb(direction);
-        }
-    }
-    for (const int period : {1, 2, 3, 4}) {
-        for (const double side : {1.0, -1.0}) {
-            Eigen::VectorXd direction(n);
-            for (Eigen::Index j = 0; j < n; ++j) direction[j] = (j / period) % 2 == 0 ? side : -side;
-            climber.climb(direction);
-        }
-    }
-    return climber.take();
-}
 
 // t in [0, 1] with |from + t (to - from)| = 1, from inside to outside.
 Eigen::VectorXd crossing(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
@@ -186,101 +162,84 @@ Eigen::VectorXd crossing(const Eigen::VectorXd& from, const Eigen::VectorXd& to)
     return from + std::min(t, 1.0) * direction;
 }
 
+// A random point of the set: exponential weights are uniform over mixtures; drawn from raw bits so that every standard
+// library gives the same ones.
+Eigen::VectorXd mixture(const Eigen::VectorXd& base, const std::vector<Eigen::VectorXd>& vertices,
+                        std::mt19937_64& generator) {
+    Eigen::VectorXd sum = base;
+    double total = 1.0;
+    for (const auto& vertex : vertices) {
+        const double weight = -std::log((static_cast<double>(generator() >> 11) + 0.5) * 0x1.0p-53);
+        sum += weight * vertex;
+        total += weight;
+    }
+    return sum / total;
+}
+
 }  // namespace
+
+bool attainable(const RelaxedSet& set, const Shift& shift) {
+    const Program program = relaxed_program(set, Objective::min_energy, set.energy_factor, shift).program;
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(program.variables());
+    if (program.violation(rest) <= 0) return other_than_rest(program).size() > 0;
+    return LinearPart(program).minimise(rest).status == LinearStatus::optimal;
+}
 
 RelaxedInterval relaxed_interval(const RelaxedSet& set, const Shift& shift, bool greatest) {
     RelaxedInterval result;
     const RelaxedProgram form = relaxed_program(set, Objective::min_energy, set.energy_factor, shift);
-    LinearPart solver(form.program);
-    const LinearSolution feasible = solver.minimise(Eigen::VectorXd::Zero(form.program.variables()));
-    if (feasible.status == LinearStatus::infeasible) {
-        result.empty = true;
-        return result;
-    }
-    if (feasible.status != LinearStatus::optimal) {
-        result.failed = true;
-        return result;
-    }
+    const LinearSolution feasible = LinearPart(form.program).minimise(Eigen::VectorXd::Zero(form.program.variables()));
+    result.empty = feasible.status == LinearStatus::infeasible;
+    result.failed = !result.empty && feasible.status != LinearStatus::optimal;
+    if (result.empty || result.failed) return result;
     const Polished least = polish(form.program, sharpened(form.program, feasible.x));
-    if (!least.feasible || !least.stationary) {
-        result.failed = true;
-        return result;
-    }
+    result.failed = !least.feasible || !least.stationary;
+    if (result.failed) return result;
     result.least_point = form.beta(least.x);
     result.least = set.energy(result.least_point);
     const bool rest = result.least <= 1e-18 * set.energy_factor;
     if (!greatest && !rest) return result;
     result.ray = recession(form);
     result.unbounded = result.ray.size() > 0;
-    if (!result.unbounded) {
-        // Without a relaxation every vertex of the greatest energy is known; a relaxation may raise any of them.
-        std::vector<Eigen::VectorXd> known{least.x};
-        const AdmissibleSet tight = admissible_set(reduce(conditions(set.kernel, set.gap_sign)));
-        for (const auto& vertex : tight.vertices) {
-            if (tight.energy(vertex) < tight.energy(tight.vertices.front()) * (1 - tie_tolerance)) break;
-            known.push_back(tight.reduction.beta(vertex) / form.scale);
-        }
-        result.vertices = climb_all(form, known);
-        if (result.vertices.empty()) result.vertices = {result.least_point};
-        result.greatest = std::max(result.least, set.energy(result.vertices.front()));
-        result.empty = rest && set.energy(result.vertices.front()) <= 1e-12 * set.energy_factor;
-    }
+    if (result.unbounded) return result;
+    // Without a relaxation every vertex of the greatest energy is known; a relaxation may raise any of them.
+    std::vector<Eigen::VectorXd> known{least.x};
+    for (const auto& beta : vertices_of_greatest_energy(set.kernel, set.gap_sign)) known.push_back(beta / form.scale);
+    result.vertices = Climber(form).vertices(known);
+    if (result.vertices.empty()) result.vertices = {result.least_point};
+    result.greatest = std::max(result.least, set.energy(result.vertices.front()));
+    result.empty = rest && set.energy(result.vertices.front()) <= rounding * set.energy_factor;
     return result;
 }
 
-RelaxedOptimum relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& interval, const RelaxedRequest& request) {
-    using Status = RelaxedOptimum::Status;
-    RelaxedOptimum result;
-    if (interval.failed) return result;
-    if (interval.empty) {
-        result.status = Status::empty;
-        return result;
-    }
-    if (request.objective == Objective::min_energy) {
-        result = {Status::optimal, interval.least_point, interval.least, true};
-        return result;
-    }
-    if (!request.level || request.objective == Objective::max_energy) {
-        throw std::invalid_argument("level: expected one unless the objective is min-energy");
-    }
-    const double level = *request.level + request.shift.level;
-    if (level < interval.least) {
-        result.status = Status::below;
-        return result;
-    }
-    if (!interval.unbounded && level > interval.greatest) {
-        result.status = Status::above;
-        return result;
-    }
-    const RelaxedProgram form =
-        relaxed_program(set, request.objective, *request.level, request.shift, request.reference);
-    const RelaxedProgram plain = relaxed_program(set, Objective::least_shock, *request.level, request.shift);
+std::optional<RelaxedOptimum> relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& interval,
+                                              const RelaxedRequest& request) {
+    if (is_extreme(request.objective)) throw std::invalid_argument("objective: expected one at a level, got an energy");
+    const RelaxedProgram form = relaxed_program(set, request.objective, request.level, request.shift);
+    const double level = request.level + request.shift.level;
+    if (interval.failed || interval.empty || level < interval.least) return std::nullopt;
+    if (!interval.unbounded && level > interval.greatest) return std::nullopt;
+
     const Eigen::VectorXd base = interval.least_point / form.scale;
-    Eigen::VectorXd top = interval.unbounded ? base : Eigen::VectorXd(interval.vertices.front() / form.scale);
     const auto on_level = [&](const Eigen::VectorXd& x) {
         if (x.squaredNorm() >= 1) return crossing(base, x);
-        if (!interval.unbounded) return crossing(x, top);
+        if (!interval.unbounded) return crossing(x, interval.vertices.front() / form.scale);
         return crossing(x, Eigen::VectorXd(x + (1.0 + x.norm()) * interval.ray));
     };
+    std::optional<RelaxedOptimum> best;
+    bool global = false;  // weak duality proves the best one
     const auto attempt = [&](const Eigen::VectorXd& x) {
         const Polished polished = polish(form.program, form.point(form.scale * on_level(x)));
         if (!polished.feasible || !polished.stationary) return;
         const double objective = polished.objective * form.objective_unit;
-        if (result.status == Status::optimal && objective >= result.objective) return;
-        result.status = Status::optimal;
-        result.beta = form.beta(polished.x);
-        result.objective = objective;
-        result.global = polished.objective - polished.lower_bound <= 1e-6 * std::abs(polished.objective);
+        if (best && objective >= best->objective) return;
+        best = RelaxedOptimum{form.beta(polished.x), objective};
+        global = polished.objective - polished.lower_bound <= 1e-6 * std::abs(polished.objective);
     };
     // Nearest point of the relaxed set to a given one: a convex program from an admissible start.
-    Program nearest = plain.program;
-    nearest.sphere_variables = 0;
-    nearest.hessian.setZero();
-    for (Eigen::Index j = 0; j < nearest.variables(); ++j) nearest.hessian.insert(j, j) = 2.0;
-    nearest.hessian.makeCompressed();
+    Program nearest = relaxed_program(set, Objective::min_energy, level, request.shift).program;
     for (const auto& beta : request.near) {
         const Eigen::VectorXd wanted = beta / form.scale;
-        nearest.gradient.setZero();
         if (nearest.violation(wanted) <= PolishOptions{}.activity) {
             attempt(wanted);
             continue;
@@ -290,20 +249,10 @@ RelaxedOptimum relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& int
         if (closest.feasible) attempt(closest.x);
     }
     std::mt19937_64 generator(1);
-    for (int k = 0; k < request.starts; ++k) {
-        if (result.global) break;
-        Eigen::VectorXd mixture = base;
-        double total = 1.0;
-        const auto add = [&](const Eigen::VectorXd& x) {
-            const double uniform = (static_cast<double>(generator() >> 11) + 0.5) * 0x1.0p-53;
-            const double weight = -std::log(uniform);
-            mixture += weight * x;
-            total += weight;
-        };
-        for (const auto& vertex : interval.vertices) add(vertex / form.scale);
-        attempt(mixture / total);
+    for (int k = 0; k < request.starts && !global; ++k) {
+        attempt(mixture(interval.least_point, interval.vertices, generator) / form.scale);
     }
-    return result;
+    return best;
 }
 
 }  // namespace nsma

@@ -6,10 +6,13 @@
 #include <Eigen/Core>
 
 #include "relaxed_program.hpp"
-#include "numerics/polish.hpp"
 #include "nsma/price/relaxed_set.hpp"
 
 namespace nsma {
+
+/// Whether any motion but rest meets the relaxed conditions, by linear programs (CLP); an infinite relaxation drops a
+/// condition.
+[[nodiscard]] bool attainable(const RelaxedSet& set, const Shift& shift);
 
 /// Attainable energies of a relaxed set, in the energy unit.
 struct RelaxedInterval {
@@ -30,26 +33,23 @@ struct RelaxedInterval {
 
 /// Best orbit of a relaxed program.
 struct RelaxedOptimum {
-    enum class Status { optimal, empty, below, above, failed };
-    Status status = Status::failed;
     Eigen::VectorXd beta;
     double objective = 0;  ///< as reported by objective_of_waves
-    bool global = false;   ///< weak duality proves it within 1e-6
 };
 
 struct RelaxedRequest {
-    Objective objective = Objective::least_shock;  ///< not max_energy
-    std::optional<double> level;                   ///< E/E_unit before the shift
+    Objective objective = Objective::least_shock;  ///< none of the energy itself
+    double level = 0;                              ///< E/E_unit before the shift, > 0
     Shift shift;
-    Eigen::VectorXd reference;  ///< `nearest` only
     /// Points near which to search first, admissible or not; then vertices and mixtures.
     std::vector<Eigen::VectorXd> near;
     int starts = 0;  ///< mixtures tried beside `near`
 };
 
-/// Feasible start by linear programs and segments, then polish(); the best of all starts.
-/// `interval` must be that of the same shift, with vertices when a level is asked.
-[[nodiscard]] RelaxedOptimum relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& interval,
-                                             const RelaxedRequest& request);
+/// Feasible start by linear programs and segments, then polish(); the best of all starts, absent where none led to an
+/// optimum. `interval` must be that of the same shift, with vertices. Throws std::invalid_argument on an objective that
+/// is the energy or a level that is not > 0.
+[[nodiscard]] std::optional<RelaxedOptimum> relaxed_optimum(const RelaxedSet& set, const RelaxedInterval& interval,
+                                                            const RelaxedRequest& request);
 
 }  // namespace nsma

@@ -29,6 +29,10 @@ public:
           size_(std::max(beta.cwiseAbs().maxCoeff(), 1e-300)) {}
 
     TiedOptima find() {
+        if (objective_ == Objective::max_energy) {
+            for (const VectorXd& vertex : vertices_of_greatest_energy(set_.kernel, set_.gap_sign)) add(vertex);
+            return std::move(result_);
+        }
         shifts();
         permutations();
         return std::move(result_);
@@ -146,6 +150,16 @@ private:
 };
 
 }  // namespace
+
+std::vector<VectorXd> vertices_of_greatest_energy(const Kernel& kernel, int gap_sign) {
+    const AdmissibleSet known = admissible_set(reduce(conditions(kernel, gap_sign)));
+    std::vector<VectorXd> result;
+    for (const VectorXd& vertex : known.vertices) {
+        if (known.energy(vertex) >= known.energy(known.vertices.front()) * (1 - same))
+            result.push_back(known.reduction.beta(vertex));
+    }
+    return result;
+}
 
 TiedOptima tied_optima(const RelaxedSet& set, Objective objective, const VectorXd& beta, const VectorXd& reference) {
     const Eigen::Index window = objective == Objective::nearest ? 2 * Eigen::Index{set.kernel.pattern.cells} : 0;

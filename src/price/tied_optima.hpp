@@ -18,6 +18,9 @@ struct TiedOptima {
     std::string refusal;                  ///< more than can be compared; empty when `others` are all
 };
 
+/// All vertices (beta) of the greatest energy of a pattern, without a relaxation; none where there is no such energy.
+[[nodiscard]] std::vector<Eigen::VectorXd> vertices_of_greatest_energy(const Kernel& kernel, int gap_sign);
+
 /// `beta` must meet the conditions of the set. `reference` as for objective_of_waves (`nearest` only).
 [[nodiscard]] TiedOptima tied_optima(const RelaxedSet& set, Objective objective, const Eigen::VectorXd& beta,
                                      const Eigen::VectorXd& reference = {});

@@ -120,7 +120,7 @@ std::optional<Resolved> resolve(const Subject& subject, const Shift& shift) {
     } else {
         nsma::RelaxedRequest request;
         request.objective = objective;
-        request.level = level;
+        request.level = *level;
         request.shift = shift;
         request.near = nsma::tied_optima(set, objective, optimum.beta()).others;  // judged by price_spectrum_test
         request.near.push_back(optimum.beta());
@@ -130,9 +130,9 @@ std::optional<Resolved> resolve(const Subject& subject, const Shift& shift) {
             request.near.insert(request.near.end(), interval.vertices.begin(), interval.vertices.end());
         }
         const auto found = nsma::relaxed_optimum(set, interval, request);
-        if (found.status != nsma::RelaxedOptimum::Status::optimal) return std::nullopt;
-        result.value = found.objective;
-        result.beta = found.beta;
+        if (!found) return std::nullopt;
+        result.value = found->objective;
+        result.beta = found->beta;
     }
     ties.push_back(result.beta);
     for (const auto& beta : ties) {
@@ -333,12 +333,8 @@ TEST(ShadowPrices, EndsOfTheIntervalAgreeWithOneSidedDifferences) {
         ends.emplace_back(Objective::min_energy,
                           OptimumSensitivity(item.set, Objective::min_energy, std::nullopt, interval.least_point));
         if (!interval.unbounded) {
-            std::vector<Eigen::VectorXd> ties;
-            for (const auto& vertex : interval.vertices) {
-                if (item.set.energy(vertex) >= interval.greatest * (1 - 1e-10)) ties.push_back(vertex);
-            }
             ends.emplace_back(Objective::max_energy, OptimumSensitivity(item.set, Objective::max_energy, std::nullopt,
-                                                                        interval.vertices.front(), {}, {}, ties));
+                                                                        interval.vertices.front()));
         }
         for (const auto& [objective, optimum] : ends) {
             const Subject subject{item.set, objective, std::nullopt, optimum};
@@ -362,9 +358,8 @@ TEST(ShadowPrices, DegenerateLevelsAgreeWithOneSidedDifferences) {
     double worst = 0;
     for (const auto& item : cases(cells_few, 1)) {
         const auto interval = nsma::relaxed_interval(item.set);
-        const auto visit = [&](double level, const Eigen::VectorXd& beta, int& compared,
-                               const std::vector<Eigen::VectorXd>& tied = {}) {
-            const OptimumSensitivity optimum(item.set, Objective::least_shock, level, beta, {}, {}, tied);
+        const auto visit = [&](double level, const Eigen::VectorXd& beta, int& compared) {
+            const OptimumSensitivity optimum(item.set, Objective::least_shock, level, beta);
             if (!optimum.refusal().empty()) return;
             const Subject subject{item.set, Objective::least_shock, level, optimum};
             for (const auto& named : directions(item.set, level, false)) {
@@ -378,13 +373,12 @@ TEST(ShadowPrices, DegenerateLevelsAgreeWithOneSidedDifferences) {
             const auto shock = [&](const Eigen::VectorXd& beta) {
                 return nsma::objective_of_waves(item.set.kernel, Objective::least_shock, beta);
             };
-            std::vector<Eigen::VectorXd> best;
+            Eigen::VectorXd best = interval.vertices.front();
             for (const auto& vertex : interval.vertices) {
                 if (item.set.energy(vertex) < interval.greatest * (1 - 1e-10)) continue;
-                if (!best.empty() && shock(vertex) < shock(best.front()) * (1 - 1e-10)) best.clear();
-                if (best.empty() || shock(vertex) <= shock(best.front()) * (1 + 1e-10)) best.push_back(vertex);
+                if (shock(vertex) < shock(best) * (1 - 1e-10)) best = vertex;
             }
-            visit(interval.greatest, best.front(), vertices, best);
+            visit(interval.greatest, best, vertices);
         }
     }
     std::printf("one-sided at a level: %d at the least energy, %d at vertices; worst %.1e\n", least, vertices, worst);

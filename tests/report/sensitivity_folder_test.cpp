@@ -25,18 +25,11 @@ nsma::Scene scene(const std::string& title = "Two patterns") {
     return result;
 }
 
-struct Study {
-    nsma::SensitivityRecords records;
-    nsma::SensitivitySummary summary;
-};
-
-Study study(const nsma::Scene& scene, const std::vector<double>& amounts = {0, 0.1, 0.3}) {
-    Study result;
+nsma::SensitivityRecords study(const nsma::Scene& scene, const std::vector<double>& amounts = {0, 0.1, 0.3}) {
     nsma::SensitivityRequest request;
     request.solver.solvers = nsma::SolverChoice::nlopt;
     request.amounts = amounts;
-    result.summary = nsma::sensitivity(scene, request, result.records, [] { return true; });
-    return result;
+    return nsma::sensitivity(scene, request, [] { return true; });
 }
 
 fs::path fresh(const char* name) {
@@ -47,10 +40,10 @@ fs::path fresh(const char* name) {
 
 TEST(SensitivityFolder, EveryFileHasOneNumberOfFields) {
     const nsma::Scene two = scene();
-    const Study found = study(two);
+    const auto found = study(two);
     const fs::path folder = fresh("sensitivity-files");
     nsma::open_sensitivity_folder(folder, two);
-    nsma::write_sensitivity(folder, two, found.records, found.summary);
+    nsma::write_sensitivity(folder, two, found);
     for (const char* file : nsma::sensitivity_files) {
         std::ifstream stream(folder / file);
         ASSERT_TRUE(stream) << file;
@@ -105,8 +98,8 @@ TEST(SensitivityFolder, ElasticitiesDoNotDependOnUnits) {
 #endif
     unit.levels = steel.levels = {3.0, 12.6};
     const auto prices = [](const nsma::Scene& scene) {
-        const Study found = study(scene, {});
-        return table_of(nsma::sensitivity_text("prices.csv", scene, found.records, found.summary));
+        const auto found = study(scene, {});
+        return table_of(nsma::sensitivity_text("prices.csv", scene, found));
     };
     const auto one = prices(unit);
     const auto other = prices(steel);
@@ -149,7 +142,7 @@ TEST(SensitivityFolder, RefusesAnotherScene) {
 
 TEST(SensitivityFolder, FunnelsEndAtTheSameNumber) {
     const nsma::Scene two = scene();
-    const auto funnels = nsma::funnels(study(two).records.ablations);
+    const auto funnels = nsma::funnels(study(two).ablations);
     ASSERT_EQ(funnels.size(), 6U);
     for (const auto& funnel : funnels) {
         EXPECT_EQ(funnel.left[0], funnels.front().left[0]);
@@ -160,9 +153,9 @@ TEST(SensitivityFolder, FunnelsEndAtTheSameNumber) {
 
 TEST(SensitivityFolder, DrawsEveryChart) {
     const nsma::Scene two = scene();
-    const Study found = study(two);
+    const auto found = study(two);
     const fs::path folder = fresh("sensitivity-charts");
-    const auto pictures = nsma::draw_sensitivity(folder, two, found.records);
+    const auto pictures = nsma::draw_sensitivity(folder, two, found);
     EXPECT_EQ(pictures.size(), 8U);
     for (const auto& picture : pictures) EXPECT_GT(fs::file_size(picture), 1000U) << picture;
 }

@@ -186,14 +186,6 @@ TEST(OptimumSpectrum, SensitivityHasTheAnswersOfTheSolver) {
         for (const auto objective :
              {Objective::least_shock, Objective::nearest, Objective::least_force, Objective::max_energy}) {
             if (objective == Objective::max_energy && subject.bar.gap_sign() == 0) continue;  // without end
-            struct Recorder final : nsma::SensitivitySink {
-                std::vector<nsma::OptimumRecord> optima;
-                void optimum(const nsma::OptimumRecord& record) override { optima.push_back(record); }
-                void interval(const nsma::IntervalRecord&) override {}
-                void curve(const nsma::CurveRecord&) override {}
-                void ablation(const nsma::AblationRecord&) override {}
-                void progress(long, long) override {}
-            } seen;
             const bool extreme = objective == Objective::max_energy;
             const auto levels = extreme ? std::vector<double>{} : subject.levels;
             nsma::Scene scene;
@@ -205,7 +197,7 @@ TEST(OptimumSpectrum, SensitivityHasTheAnswersOfTheSolver) {
             scene.all_kinds = true;
             nsma::SensitivityRequest request;
             request.amounts.clear();
-            (void)nsma::sensitivity(scene, request, seen, [] { return true; });
+            const auto seen = nsma::sensitivity(scene, request, [] { return true; });
             // Each level of `nearest` stays near the one before, as in a sweep.
             VectorXd before;
             std::size_t i = subject.bar.gap_sign() != 0 ? 1 : 0;

@@ -12,24 +12,9 @@
 namespace {
 
 using nsma::AblationRecord;
-using nsma::CurveRecord;
-using nsma::IntervalRecord;
-using nsma::OptimumRecord;
 using nsma::Parameter;
 using nsma::Scene;
 using nsma::Slope;
-
-struct Recorder : nsma::SensitivitySink {
-    std::vector<OptimumRecord> optima;
-    std::vector<IntervalRecord> intervals;
-    std::vector<CurveRecord> curves;
-    std::vector<AblationRecord> ablations;
-    void optimum(const OptimumRecord& record) override { optima.push_back(record); }
-    void interval(const IntervalRecord& record) override { intervals.push_back(record); }
-    void curve(const CurveRecord& record) override { curves.push_back(record); }
-    void ablation(const AblationRecord& record) override { ablations.push_back(record); }
-    void progress(long done, long total) override { EXPECT_LE(done, total); }
-};
 
 nsma::SensitivityRequest quick() {
     nsma::SensitivityRequest request;
@@ -51,11 +36,11 @@ bool always() { return true; }
 
 // Curves start with the slope that the multipliers predict.
 TEST(Sensitivity, CurvesStartWithThePredictedSlope) {
-    Recorder seen;
     const Scene scene = mode_scene();
     auto request = quick();
     request.amounts = {0, 1e-4, 2e-4};
-    const auto summary = nsma::sensitivity(scene, request, seen, always);
+    const auto seen = nsma::sensitivity(scene, request, always, [](long done, long total) { EXPECT_LE(done, total); });
+    const auto& summary = seen.summary;
     EXPECT_EQ(summary.failed, 0);
     EXPECT_LT(summary.worst_euler, 1e-8);
     int compared = 0;
@@ -87,8 +72,7 @@ TEST(Sensitivity, FrequencyAtFixedEnergyIsThatOfTheClosedForm) {
         scene.bar.gap = gap;
         auto request = quick();
         request.amounts.clear();
-        Recorder seen;
-        (void)nsma::sensitivity(scene, request, seen, always);
+        const auto seen = nsma::sensitivity(scene, request, always);
         for (const auto& record : seen.intervals) {
             ASSERT_EQ(record.mode, 1);
             if (!record.frequency_by_energy_difference) continue;
@@ -147,8 +131,8 @@ TEST(Sensitivity, EulersIdentityHoldsOnEveryOptimumOfTheFullSpectrum) {
         request.solver = {};
     }
     request.amounts.clear();
-    Recorder seen;
-    const auto summary = nsma::sensitivity(scene, request, seen, always);
+    const auto seen = nsma::sensitivity(scene, request, always, [](long done, long total) { EXPECT_LE(done, total); });
+    const auto& summary = seen.summary;
     int without = 0;
     for (const auto& optimum : seen.optima) {
         if (!optimum.euler_defect) {

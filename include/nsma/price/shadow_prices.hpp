@@ -50,30 +50,18 @@ class OptimumAnalysis;
 /// this. Source: J. F. Bonnans, A. Shapiro, SIAM Review 40 (1998) 228-264.
 class OptimumSensitivity {
 public:
-    struct Options {
-        double active = 1e-9;    ///< scaled slack, multiplier or singular value that is zero
-        double inactive = 1e-6;  ///< and from which on it is not
-    };
-
-    /// `beta` is an optimum at `level` (absent for min_energy only). Throws std::invalid_argument
-    /// on a wrong size, on max_energy with a level or a missing level. For max_energy (no level)
-    /// beta is a vertex; `ties` are further optima of the same value, for max_energy all other vertices of it.
+    /// `beta` is an optimum at `level` (absent for min_energy and max_energy only), `reference` the window that
+    /// `nearest` stays near. Throws std::invalid_argument on a wrong size, a missing or a misplaced level.
     OptimumSensitivity(const RelaxedSet& set, Objective objective, std::optional<double> level,
-                       const Eigen::VectorXd& beta, const Options& options, const Eigen::VectorXd& reference = {},
-                       const std::vector<Eigen::VectorXd>& ties = {});
-    OptimumSensitivity(const RelaxedSet& set, Objective objective, std::optional<double> level,
-                       const Eigen::VectorXd& beta)
-        : OptimumSensitivity(set, objective, level, beta, Options{}) {}
-    ~OptimumSensitivity();
-    OptimumSensitivity(OptimumSensitivity&&) noexcept;
-    OptimumSensitivity& operator=(OptimumSensitivity&&) noexcept;
+                       const Eigen::VectorXd& beta, const Eigen::VectorXd& reference = {});
 
     /// Empty, or why nothing can be said: not stationary, a row neither active nor inactive.
-    [[nodiscard]] const std::string& refusal() const;
-    [[nodiscard]] double value() const;                 ///< objective, as reported
-    [[nodiscard]] const Eigen::VectorXd& beta() const;  ///< polished
-    [[nodiscard]] bool nondegenerate() const;           ///< independent active rows, positive multipliers
-    [[nodiscard]] int tied() const;  ///< optima of this value that symmetries give, this one included; 0: too many
+    [[nodiscard]] const std::string& refusal() const { return refusal_; }
+    [[nodiscard]] double value() const;          ///< objective, as reported
+    [[nodiscard]] Eigen::VectorXd beta() const;  ///< polished
+    [[nodiscard]] bool nondegenerate() const;    ///< independent active rows, positive multipliers
+    /// Optima of this value that symmetries give, this one included; 0: too many.
+    [[nodiscard]] int tied() const { return tied_; }
     [[nodiscard]] std::vector<int> active_rows() const;  ///< of the set
     /// Relative to 1 + |grad f|, scaled; absent where there are no multipliers.
     [[nodiscard]] std::optional<double> kkt_residual() const;
@@ -86,8 +74,10 @@ public:
     [[nodiscard]] OrbitSlope orbit_slope(const Shift& direction) const;
 
 private:
-    std::vector<std::unique_ptr<OptimumAnalysis>> branches_;  // the optimum, then its ties
-    std::string too_many_;                                    // why not all ties are there
+    std::vector<std::shared_ptr<const OptimumAnalysis>> branches_;  // the optimum, then its ties
+    Objective objective_;
+    std::string refusal_;
+    int tied_ = 0;
 };
 
 }  // namespace nsma

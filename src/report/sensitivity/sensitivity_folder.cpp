@@ -1,6 +1,7 @@
 #include "sensitivity_folder.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -13,10 +14,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
+template <class Value>
+std::string field(const Value& value) {
+    if constexpr (std::is_convertible_v<Value, std::string_view>) {
+        return csv_text(value);
+    } else if constexpr (std::is_convertible_v<Value, std::optional<double>> && !std::is_integral_v<Value>) {
+        return csv_number(value);
+    } else {
+        return fmt::format("{}", value);
+    }
+}
+
+template <class... Values>
+std::string fields(const Values&... values) {
+    std::string text = ((field(values) + ',') + ...);
+    text.pop_back();
+    return text;
+}
+
 constexpr const char* pattern_columns = "cells,gap,free_steps,contact_steps";
 
 std::string pattern_fields(const Scene& scene, const Pattern& pattern) {
-    return fmt::format("{},{},{},{}", pattern.cells, scene.bar.gap, pattern.free_steps, pattern.contact_steps);
+    return fields(pattern.cells, scene.bar.gap, pattern.free_steps, pattern.contact_steps);
 }
 
 std::string steps_text(const std::vector<int>& steps) {
@@ -47,34 +66,30 @@ constexpr const char* price_columns =
     "parameter,parameter_unit,steps,active,kind,right,left,right_si,left_si,elasticity_right,elasticity_left,"
     "root_right,root_left,reason";
 
-std::string price_fields(const Price& price, Objective objective, double value, int gap_sign, double level,
-                         const Bar& bar) {
-    const auto si = [&](const std::optional<double>& side) {
-        return side ? csv_number(in_si(*side, objective, price.parameter, bar)) : std::string();
+std::string price_fields(const Price& price, Objective objective, double value, double level, const Bar& bar) {
+    using Number = std::optional<double>;
+    const auto si = [&](const Number& side) {
+        return side ? Number(in_si(*side, objective, price.parameter, bar)) : Number();
     };
-    const auto relative = [&](const std::optional<double>& side) {
-        return side ? csv_number(elasticity(*side, price.parameter, value, gap_sign, level)) : std::string();
+    const auto relative = [&](const Number& side) {
+        return side ? Number(elasticity(*side, price.parameter, value, bar.gap_sign(), level)) : Number();
     };
     const Slope& slope = price.slope;
-    return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", name(price.parameter), unit_name(price.parameter),
-                       steps_text(price.steps), price.active, kind_name(slope.kind), csv_number(slope.right),
-                       csv_number(slope.left), si(slope.right), si(slope.left), relative(slope.right),
-                       relative(slope.left), csv_number(slope.right_root), csv_number(slope.left_root),
-                       csv_text(slope.reason));
+    return fields(name(price.parameter), unit_name(price.parameter), steps_text(price.steps), price.active,
+                  kind_name(slope.kind), slope.right, slope.left, si(slope.right), si(slope.left),
+                  relative(slope.right), relative(slope.left), slope.right_root, slope.left_root, slope.reason);
 }
-
-double level_of(const OptimumRecord& record) { return record.level.value_or(energy_ratio(record.orbit)); }
 
 std::string optima_text(const Scene& scene, const SensitivityRecords& records) {
     std::string text = fmt::format(
         "{},level,energy_joule,objective,objective_value,global,nondegenerate,tied,kkt_residual,euler_defect,refusal\n",
         pattern_columns);
     for (const auto& record : records.optima) {
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", pattern_fields(scene, record.orbit.kernel.pattern),
-                            csv_number(record.level), csv_number(energy(record.orbit)), name(record.objective),
-                            csv_number(record.value), record.global, record.nondegenerate,
-                            record.tied > 0 ? std::to_string(record.tied) : std::string(),
-                            csv_number(record.kkt_residual), csv_number(record.euler_defect), csv_text(record.refusal));
+        const std::string tied = record.tied > 0 ? std::to_string(record.tied) : std::string();
+        text += pattern_fields(scene, record.orbit.kernel.pattern) + ',' +
+                fields(record.level, energy(record.orbit), name(record.objective), record.value, record.global,
+                       record.nondegenerate, tied, record.kkt_residual, record.euler_defect, record.refusal) +
+                '\n';
     }
     return text;
 }
@@ -82,11 +97,11 @@ std::string optima_text(const Scene& scene, const SensitivityRecords& records) {
 std::string prices_text(const Scene& scene, const SensitivityRecords& records) {
     std::string text = fmt::format("{},level,objective,objective_value,{}\n", pattern_columns, price_columns);
     for (const auto& record : records.optima) {
+        const double level = record.level.value_or(energy_ratio(record.orbit));
         for (const auto& price : record.prices) {
-            text += fmt::format(
-                "{},{},{},{},{}\n", pattern_fields(scene, record.orbit.kernel.pattern), csv_number(record.level),
-                name(record.objective), csv_number(record.value),
-                price_fields(price, record.objective, record.value, scene.bar.gap_sign(), level_of(record), scene.bar));
+            text += pattern_fields(scene, record.orbit.kernel.pattern) + ',' +
+                    fields(record.level, name(record.objective), record.value) + ',' +
+                    price_fields(price, record.objective, record.value, level, scene.bar) + '\n';
         }
     }
     return text;
@@ -98,18 +113,15 @@ std::string derivatives_text(const Scene& scene, const SensitivityRecords& recor
     for (const auto& record : records.optima) {
         // alpha = beta u/dt, the gap being moved at a fixed unit u.
         const double velocity = scene.bar.displacement_unit() / record.orbit.mesh().time_step(scene.bar);
-        for (const auto& derivative : record.derivatives) {
-            const std::string head = fmt::format("{},{},{},{},{}", pattern_fields(scene, record.orbit.kernel.pattern),
-                                                 csv_number(record.level), name(record.objective),
-                                                 name(derivative.parameter), unit_name(derivative.parameter));
-            if (!derivative.slope.beta) {
-                text += fmt::format("{},,,,{}\n", head, csv_text(derivative.slope.reason));
-                continue;
-            }
-            const double unit = unit_of(derivative.parameter, scene.bar);
-            for (Eigen::Index j = 0; j < derivative.slope.beta->size(); ++j) {
-                const double rate = (*derivative.slope.beta)[j];
-                text += fmt::format("{},{},{},{},\n", head, j, csv_number(rate), csv_number(rate * velocity / unit));
+        for (const auto& [parameter, slope] : record.derivatives) {
+            const std::string head =
+                pattern_fields(scene, record.orbit.kernel.pattern) + ',' +
+                fields(record.level, name(record.objective), name(parameter), unit_name(parameter));
+            if (!slope.beta) text += head + ",,,," + field(slope.reason) + '\n';
+            const double unit = unit_of(parameter, scene.bar);
+            for (Eigen::Index j = 0; slope.beta && j < slope.beta->size(); ++j) {
+                const double rate = (*slope.beta)[j];
+                text += head + ',' + fields(j, rate, rate * velocity / unit) + ",\n";
             }
         }
     }
@@ -122,15 +134,14 @@ std::string intervals_text(const Scene& scene, const SensitivityRecords& records
         "frequency_by_gap,frequency_by_gap_difference,{}\n",
         pattern_columns, price_columns);
     for (const auto& record : records.intervals) {
+        const std::string mode = record.mode ? std::to_string(*record.mode) : std::string();
         const auto rows = [&](const char* end, double value, const std::vector<Price>& prices) {
             for (const auto& price : prices) {
-                text += fmt::format(
-                    "{},{},{},{},{},{},{},{},{},{},{}\n", pattern_fields(scene, record.pattern),
-                    record.mode ? fmt::format("{}", *record.mode) : "", csv_number(record.pattern.frequency_ratio()),
-                    end, csv_number(value), csv_number(value * scene.bar.energy_unit()),
-                    csv_number(record.frequency_by_energy), csv_number(record.frequency_by_energy_difference),
-                    csv_number(record.frequency_by_gap), csv_number(record.frequency_by_gap_difference),
-                    price_fields(price, Objective::min_energy, value, scene.bar.gap_sign(), value, scene.bar));
+                text += pattern_fields(scene, record.pattern) + ',' +
+                        fields(mode, record.pattern.frequency_ratio(), end, value, value * scene.bar.energy_unit(),
+                               record.frequency_by_energy, record.frequency_by_energy_difference,
+                               record.frequency_by_gap, record.frequency_by_gap_difference) +
+                        ',' + price_fields(price, Objective::min_energy, value, value, scene.bar) + '\n';
             }
         };
         rows("least", record.least, record.least_prices);
@@ -145,14 +156,13 @@ std::string relaxations_text(const Scene& scene, const SensitivityRecords& recor
         "level,objective,objective_value\n",
         pattern_columns);
     for (const auto& record : records.curves) {
-        const bool length = record.relaxed != "adhesion";
-        const bool force = record.relaxed.find("adhesion") != std::string::npos;
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", pattern_fields(scene, record.pattern),
-                            record.relaxed, csv_number(record.amount),
-                            length ? csv_number(record.amount * scene.bar.displacement_unit()) : "",
-                            force ? csv_number(record.amount * scene.bar.force_unit()) : "", record.admissible,
-                            record.failed, csv_number(record.least), csv_number(record.greatest), record.unbounded,
-                            csv_number(record.level), name(scene.objective), csv_number(record.objective));
+        std::optional<double> length, force;
+        if (record.relaxed != "adhesion") length = record.amount * scene.bar.displacement_unit();
+        if (record.relaxed.find("adhesion") != std::string::npos) force = record.amount * scene.bar.force_unit();
+        text += pattern_fields(scene, record.pattern) + ',' +
+                fields(record.relaxed, record.amount, length, force, record.admissible, record.failed, record.least,
+                       record.greatest, record.unbounded, record.level, name(scene.objective), record.objective) +
+                '\n';
     }
     return text;
 }
@@ -163,23 +173,20 @@ std::string ablation_text(const Scene& scene, const SensitivityRecords& records)
                     pattern_columns);
     for (const auto& record : records.ablations) {
         const auto& s = record.survives;
-        std::string only;  // the one condition without which it would exist
-        if (!s[7]) {
-            const int pairs = s[6] + s[5] + s[3];
-            if (pairs == 1) only = s[6] ? "cond1" : s[5] ? "cond2" : "cond3";
-        }
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", pattern_fields(scene, record.pattern),
-                            record.kernel_dimension, s[0], s[1], s[2], s[4], s[3], s[5], s[6], s[7], only,
-                            record.kind ? name(*record.kind) : std::string_view());
+        const char* only = "";  // the one condition without which it would exist
+        if (!s[7] && s[6] + s[5] + s[3] == 1) only = s[6] ? "cond1" : s[5] ? "cond2" : "cond3";
+        text += pattern_fields(scene, record.pattern) + ',' +
+                fields(record.kernel_dimension, s[0], s[1], s[2], s[4], s[3], s[5], s[6], s[7], only,
+                       record.kind ? name(*record.kind) : std::string_view()) +
+                '\n';
     }
     return text;
 }
 
 std::string funnel_text(const SensitivityRecords& records) {
     std::string text = "first,second,third,kernel,after_first,after_second,after_third\n";
-    for (const auto& funnel : funnels(records.ablations)) {
-        text += fmt::format("cond{},cond{},cond{},{},{},{},{}\n", funnel.order[0], funnel.order[1], funnel.order[2],
-                            funnel.left[0], funnel.left[1], funnel.left[2], funnel.left[3]);
+    for (const auto& [order, left] : funnels(records.ablations)) {
+        text += fmt::format("cond{},{}\n", fmt::join(order, ",cond"), fmt::join(left, ","));
     }
     return text;
 }
@@ -233,8 +240,7 @@ void open_sensitivity_folder(const fs::path& folder, const Scene& scene) {
     prepare_results_folder(folder, scene, sensitivity_files);
 }
 
-std::string sensitivity_text(const std::string& file, const Scene& scene, const SensitivityRecords& records,
-                             const SensitivitySummary& summary) {
+std::string sensitivity_text(const std::string& file, const Scene& scene, const SensitivityRecords& records) {
     const std::string head =
         fmt::format("# nsma sensitivity: {}; columns and units: data/README.md of nsma\n", one_line(scene.title));
     if (file == "optima.csv") return head + optima_text(scene, records);
@@ -244,14 +250,13 @@ std::string sensitivity_text(const std::string& file, const Scene& scene, const 
     if (file == "relaxations.csv") return head + relaxations_text(scene, records);
     if (file == "ablation.csv") return head + ablation_text(scene, records);
     if (file == "funnel.csv") return head + funnel_text(records);
-    if (file == "sensitivity.txt") return summary_text(summary);
+    if (file == "sensitivity.txt") return summary_text(records.summary);
     throw std::invalid_argument("file: expected a name of sensitivity_files, got " + file);
 }
 
-void write_sensitivity(const fs::path& folder, const Scene& scene, const SensitivityRecords& records,
-                       const SensitivitySummary& summary) {
+void write_sensitivity(const fs::path& folder, const Scene& scene, const SensitivityRecords& records) {
     for (const char* file : sensitivity_files) {
-        write_whole(folder / file, sensitivity_text(file, scene, records, summary));
+        write_whole(folder / file, sensitivity_text(file, scene, records));
     }
 }
 

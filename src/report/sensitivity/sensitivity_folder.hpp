@@ -23,31 +23,16 @@ struct Funnel {
 };
 [[nodiscard]] std::vector<Funnel> funnels(const std::vector<AblationRecord>& records);
 
-/// Everything a study found, in the order it came.
-struct SensitivityRecords : SensitivitySink {
-    std::vector<OptimumRecord> optima;
-    std::vector<IntervalRecord> intervals;
-    std::vector<CurveRecord> curves;
-    std::vector<AblationRecord> ablations;
-
-    void optimum(const OptimumRecord& record) override { optima.push_back(record); }
-    void interval(const IntervalRecord& record) override { intervals.push_back(record); }
-    void curve(const CurveRecord& record) override { curves.push_back(record); }
-    void ablation(const AblationRecord& record) override { ablations.push_back(record); }
-    void progress(long, long) override {}
-};
-
 /// Makes the folder and stores the scene in it. Throws InputError (one line) when it cannot be
 /// made or written or holds another scene's results.
 void open_sensitivity_folder(const std::filesystem::path& folder, const Scene& scene);
 
 /// Writes the files; each appears under its name only when it is complete. Throws InputError.
-void write_sensitivity(const std::filesystem::path& folder, const Scene& scene, const SensitivityRecords& records,
-                       const SensitivitySummary& summary);
+void write_sensitivity(const std::filesystem::path& folder, const Scene& scene, const SensitivityRecords& records);
 
 /// The text of each file; `file` is one of sensitivity_files.
 [[nodiscard]] std::string sensitivity_text(const std::string& file, const Scene& scene,
-                                           const SensitivityRecords& records, const SensitivitySummary& summary);
+                                           const SensitivityRecords& records);
 
 /// Derivative in SI: objective (J; N for least-force) per metre, newton or joule.
 [[nodiscard]] double in_si(double derivative, Objective objective, Parameter parameter, const Bar& bar);

@@ -1,7 +1,9 @@
 #include "nsma/study/sensitivity/sensitivity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "nsma/orbit/backbone.hpp"
 #include "price/relaxed_solver.hpp"
@@ -10,20 +12,13 @@
 namespace nsma {
 namespace {
 
-struct Study {
-    std::string name;
-    Relaxation unit;  // 1 for each condition relaxed
-};
-
-const std::array<Study, 6>& studies() {
-    static const std::array<Study, 6> all{{{"penetration", {1, 0, 0}},
-                                           {"band", {0, 1, 0}},
-                                           {"adhesion", {0, 0, 1}},
-                                           {"penetration+band", {1, 1, 0}},
-                                           {"penetration+adhesion", {1, 0, 1}},
-                                           {"band+adhesion", {0, 1, 1}}}};
-    return all;
-}
+// What is relaxed along a curve, alone and in pairs: 1 for each condition.
+constexpr std::array<std::pair<const char*, Relaxation>, 6> studies{{{"penetration", {1, 0, 0}},
+                                                                     {"band", {0, 1, 0}},
+                                                                     {"adhesion", {0, 0, 1}},
+                                                                     {"penetration+band", {1, 1, 0}},
+                                                                     {"penetration+adhesion", {1, 0, 1}},
+                                                                     {"band+adhesion", {0, 1, 1}}}};
 
 // omega against s = sqrt(E_g/E) from two stored neighbours of the mode: T is linear in s.
 void compare_frequency(IntervalRecord& record, int gap_sign) {
@@ -43,28 +38,25 @@ void compare_frequency(IntervalRecord& record, int gap_sign) {
 
 class Sensitivity {
 public:
-    Sensitivity(const Scene& scene, const SensitivityRequest& request, SensitivitySink& sink,
-                const std::function<bool()>& keep_going)
+    Sensitivity(const Scene& scene, const SensitivityRequest& request, const std::function<bool()>& keep_going)
         : scene_(scene),
           request_(request),
-          sink_(sink),
           keep_going_(keep_going),
           solver_(request.solver),
           gap_sign_(scene.bar.gap_sign()) {}
 
-    SensitivitySummary run() {
+    SensitivityRecords run(const std::function<void(long, long)>& progress) {
         const std::vector<Pattern> patterns =
             request_.pattern ? std::vector<Pattern>{*request_.pattern} : patterns_of(scene_);
-        total_ = static_cast<long>(patterns.size());
         for (const Pattern& pattern : patterns) {
             if (!keep_going_()) {
                 summary_.interrupted = true;
                 break;
             }
             visit(pattern);
-            sink_.progress(++done_, total_);
+            if (progress) progress(summary_.patterns, static_cast<long>(patterns.size()));
         }
-        return summary_;
+        return std::move(records_);
     }
 
 private:
@@ -74,43 +66,35 @@ private:
         options.prove = false;
         const PatternProblem problem = pattern_problem(pattern, gap_sign_, options);
         if (problem.verdict == Verdict::failed) ++summary_.failed;
-        sink_.ablation(ablation_record(problem.kernel, gap_sign_));
+        records_.ablations.push_back(ablation_record(problem.kernel, gap_sign_));
         if (problem.verdict == Verdict::trivial || problem.verdict == Verdict::failed) return;
         const RelaxedSet set = relaxed_set(problem.kernel, gap_sign_);
-        const bool admissible = problem.verdict == Verdict::admissible;
-        if (admissible) ++summary_.admissible;
-        if (admissible && !request_.pattern && !is_solved(scene_.all_kinds, problem.kind)) {
+        if (problem.verdict != Verdict::admissible) {
+            if (gap_sign_ != 0) curves(set, false, {});
+            return;
+        }
+        ++summary_.admissible;
+        if (!request_.pattern && !is_solved(scene_.all_kinds, problem.kind)) {
             ++summary_.left;
             return;
         }
-        if (admissible) {
-            optima(problem);
-            if (gap_sign_ != 0) {
-                IntervalRecord record = interval_record(set);
-                compare_frequency(record, gap_sign_);
-                if (record.frequency_by_gap_difference) {
-                    summary_.worst_frequency =
-                        std::max(summary_.worst_frequency,
-                                 std::abs(*record.frequency_by_gap_difference / *record.frequency_by_gap - 1));
-                }
-                sink_.interval(record);
-            }
-        }
-        if (gap_sign_ != 0) curves(set, admissible);
+        const std::vector<OptimumRecord> found = optima(problem);
+        records_.optima.insert(records_.optima.end(), found.begin(), found.end());
+        if (gap_sign_ == 0) return;
+        interval(set);
+        curves(set, true, found);
     }
 
-    // Every level asked. Relaxation curves are drawn at the middle one solved.
-    void optima(const PatternProblem& problem) {
-        solved_.clear();
-        solved_levels_.clear();
+    // At every level asked.
+    [[nodiscard]] std::vector<OptimumRecord> optima(const PatternProblem& problem) {
         std::vector<std::optional<double>> levels;
-        const bool extreme = is_extreme(scene_.objective);
         if (gap_sign_ != 0) levels.emplace_back();
         if (request_.pattern) {
             if (request_.level) levels = {request_.level};
-        } else if (!extreme) {
+        } else if (!is_extreme(scene_.objective)) {
             levels.insert(levels.end(), scene_.levels.begin(), scene_.levels.end());
         }
+        std::vector<OptimumRecord> found;
         OrbitRequest wanted;
         Eigen::VectorXd before;  // window of the orbit before, which `nearest` stays near, as in a sweep
         for (const auto& level : levels) {
@@ -122,16 +106,12 @@ private:
             const OrbitAnswer answer = solver_.solve(scene_.bar, problem, wanted);
             if (answer.verdict == Verdict::failed) ++summary_.failed;
             if (!answer.orbit) continue;
-            if (level) {
-                solved_.push_back(answer.orbit->beta);
-                solved_levels_.push_back(*level);
-            }
-            OptimumRecord record = optimum_record(*answer.orbit, gap_sign_, scene_.objective, level, answer.reference);
-            record.global = proved_best(answer);
+            found.push_back(optimum_record(*answer.orbit, gap_sign_, scene_.objective, level, answer.reference));
+            found.back().global = proved_best(answer);
             if (level && scene_.objective == Objective::nearest) before = reference_window(*answer.orbit);
-            count(record);
-            sink_.optimum(record);
+            count(found.back());
         }
+        return found;
     }
 
     void count(const OptimumRecord& record) {
@@ -146,71 +126,73 @@ private:
         if (record.kkt_residual) summary_.worst_kkt = std::max(summary_.worst_kkt, *record.kkt_residual);
     }
 
-    void curves(const RelaxedSet& set, bool admissible) {
-        std::optional<double> level;
-        std::vector<Eigen::VectorXd> optima;  // the best orbit without a relaxation, and those that tie with it
-        if (!solved_.empty() && admissible && scene_.objective != Objective::nearest) {
-            const std::size_t middle = solved_.size() / 2;
-            level = solved_levels_[middle];
-            optima = tied_optima(set, scene_.objective, solved_[middle]).others;
-            optima.push_back(solved_[middle]);
+    void interval(const RelaxedSet& set) {
+        IntervalRecord record = interval_record(set);
+        compare_frequency(record, gap_sign_);
+        if (record.frequency_by_gap_difference) {
+            const double off = std::abs(*record.frequency_by_gap_difference / *record.frequency_by_gap - 1);
+            summary_.worst_frequency = std::max(summary_.worst_frequency, off);
         }
-        for (const Study& study : studies()) {
-            std::vector<Eigen::VectorXd> near = optima;
+        records_.intervals.push_back(std::move(record));
+    }
+
+    // Relaxation curves; those of the objective at the middle level solved.
+    void curves(const RelaxedSet& set, bool admissible, std::vector<OptimumRecord> solved) {
+        std::erase_if(solved, [](const OptimumRecord& record) { return !record.level; });
+        RelaxedRequest wanted;
+        wanted.objective = scene_.objective;
+        wanted.starts = 4;
+        std::vector<Eigen::VectorXd> optima;  // the best orbit without a relaxation, and those that tie with it
+        if (!solved.empty() && scene_.objective != Objective::nearest) {
+            const OptimumRecord& middle = solved[solved.size() / 2];
+            wanted.level = *middle.level;
+            optima = tied_optima(set, scene_.objective, middle.orbit.beta).others;
+            optima.push_back(middle.orbit.beta);
+        }
+        for (const auto& [relaxed, unit] : studies) {
+            wanted.near = optima;
             for (const double amount : request_.amounts) {
                 if (!keep_going_()) return;
                 CurveRecord record;
                 record.pattern = set.kernel.pattern;
-                record.relaxed = study.name;
+                record.relaxed = relaxed;
                 record.amount = amount;
-                const Relaxation relaxation{amount * study.unit.penetration, amount * study.unit.band,
-                                            amount * study.unit.adhesion};
-                const Shift shift = set.shift(relaxation);
+                wanted.shift = set.shift({amount * unit.penetration, amount * unit.band, amount * unit.adhesion});
                 // Of patterns that no orbit meets at zero only their number is of interest.
-                const RelaxedInterval interval = relaxed_interval(set, shift, admissible);
+                const RelaxedInterval interval = relaxed_interval(set, wanted.shift, admissible);
                 record.failed = interval.failed;
                 record.admissible = !interval.failed && !interval.empty;
-                if (record.admissible) record.least = interval.least;
                 record.unbounded = interval.unbounded;
+                if (record.admissible) record.least = interval.least;
                 if (record.admissible && admissible && !interval.unbounded) record.greatest = interval.greatest;
-                if (record.admissible && admissible && level) {
-                    record.level = level;
-                    RelaxedRequest wanted;
-                    wanted.objective = scene_.objective;
-                    wanted.level = level;
-                    wanted.shift = shift;
-                    wanted.near = near;
-                    wanted.starts = 4;
-                    const RelaxedOptimum best = relaxed_optimum(set, interval, wanted);
-                    if (best.status == RelaxedOptimum::Status::optimal) {
-                        record.objective = best.objective;
-                        near = optima;
-                        near.push_back(best.beta);
+                if (record.admissible && !optima.empty()) {
+                    record.level = wanted.level;
+                    if (const auto best = relaxed_optimum(set, interval, wanted)) {
+                        record.objective = best->objective;
+                        wanted.near = optima;
+                        wanted.near.push_back(best->beta);
                     }
                 }
-                sink_.curve(record);
+                records_.curves.push_back(std::move(record));
             }
         }
     }
 
     const Scene& scene_;
     const SensitivityRequest& request_;
-    SensitivitySink& sink_;
     const std::function<bool()>& keep_going_;
     OrbitSolver solver_;
     int gap_sign_;
-    std::vector<Eigen::VectorXd> solved_;  // beta, of the pattern in hand
-    std::vector<double> solved_levels_;
-    SensitivitySummary summary_;
-    long done_ = 0;
-    long total_ = 0;
+    SensitivityRecords records_;
+    SensitivitySummary& summary_ = records_.summary;
 };
 
 }  // namespace
 
-SensitivitySummary sensitivity(const Scene& scene, const SensitivityRequest& request, SensitivitySink& sink,
-                               const std::function<bool()>& keep_going) {
-    return Sensitivity(scene, request, sink, keep_going).run();
+SensitivityRecords sensitivity(const Scene& scene, const SensitivityRequest& request,
+                               const std::function<bool()>& keep_going,
+                               const std::function<void(long, long)>& progress) {
+    return Sensitivity(scene, request, keep_going).run(progress);
 }
 
 }  // namespace nsma

@@ -2,15 +2,15 @@
 #include <cmath>
 
 #include "nsma/orbit/backbone.hpp"
-#include "nsma/set/admissible_set.hpp"
 #include "price/relaxed_solver.hpp"
 #include "nsma/study/sensitivity/sensitivity.hpp"
 
 namespace nsma {
 namespace {
 
-// Vertices whose energies differ by rounding only are one end of the interval.
-constexpr double tie_tolerance = 1e-10;
+// What has a price at an end of the energy interval.
+const std::vector<Parameter> length_and_force{Parameter::gap, Parameter::contact, Parameter::band,
+                                              Parameter::penetration, Parameter::adhesion};
 
 // The direction that moves one parameter by one unit.
 Shift direction_of(const RelaxedSet& set, Parameter parameter, int row = -1) {
@@ -68,15 +68,7 @@ OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objecti
                              const Eigen::VectorXd& reference) {
     const RelaxedSet set = relaxed_set(orbit.kernel, gap_sign);
     const Objective asked = level || objective == Objective::max_energy ? objective : Objective::min_energy;
-    std::vector<Eigen::VectorXd> ties;
-    if (asked == Objective::max_energy) {
-        const AdmissibleSet known = admissible_set(reduce(conditions(orbit.kernel, gap_sign)));
-        for (const auto& vertex : known.vertices) {
-            if (known.energy(vertex) >= known.energy(known.vertices.front()) * (1 - tie_tolerance))
-                ties.push_back(known.reduction.beta(vertex));
-        }
-    }
-    const OptimumSensitivity optimum(set, asked, level, orbit.beta, OptimumSensitivity::Options{}, reference, ties);
+    const OptimumSensitivity optimum(set, asked, level, orbit.beta, reference);
     OptimumRecord record;
     record.orbit = orbit;
     record.objective = asked;
@@ -87,8 +79,7 @@ OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objecti
     record.refusal = optimum.refusal();
     record.kkt_residual = optimum.kkt_residual();
     record.euler_defect = optimum.euler_defect();
-    std::vector<Parameter> whole{Parameter::gap, Parameter::contact, Parameter::band, Parameter::penetration,
-                                 Parameter::adhesion};
+    std::vector<Parameter> whole = length_and_force;
     if (level) whole.push_back(Parameter::energy);
     record.prices = prices_of(set, optimum, whole);
     const std::vector<int> active = optimum.active_rows();
@@ -120,21 +111,14 @@ IntervalRecord interval_record(const RelaxedSet& set) {
     record.pattern = set.kernel.pattern;
     if (interval.failed || interval.empty) return record;
     record.least = interval.least;
-    const std::vector<Parameter> parameters{Parameter::gap, Parameter::contact, Parameter::band, Parameter::penetration,
-                                            Parameter::adhesion};
     if (set.gap_sign != 0) {
         const OptimumSensitivity least(set, Objective::min_energy, std::nullopt, interval.least_point);
-        record.least_prices = prices_of(set, least, parameters);
+        record.least_prices = prices_of(set, least, length_and_force);
     }
     if (!interval.unbounded) {
         record.greatest = interval.greatest;
-        std::vector<Eigen::VectorXd> ties;
-        for (const auto& vertex : interval.vertices) {
-            if (set.energy(vertex) >= interval.greatest * (1 - tie_tolerance)) ties.push_back(vertex);
-        }
-        const OptimumSensitivity greatest(set, Objective::max_energy, std::nullopt, interval.vertices.front(),
-                                          OptimumSensitivity::Options{}, {}, ties);
-        record.greatest_prices = prices_of(set, greatest, parameters);
+        const OptimumSensitivity greatest(set, Objective::max_energy, std::nullopt, interval.vertices.front());
+        record.greatest_prices = prices_of(set, greatest, length_and_force);
     }
     record.mode = mode_of(record.pattern);
     if (record.mode && set.gap_sign != 0) {

@@ -98,16 +98,6 @@ struct AblationRecord {
     std::array<bool, 8> survives{};
 };
 
-class SensitivitySink {
-public:
-    virtual ~SensitivitySink() = default;
-    virtual void optimum(const OptimumRecord& record) = 0;
-    virtual void interval(const IntervalRecord& record) = 0;
-    virtual void curve(const CurveRecord& record) = 0;
-    virtual void ablation(const AblationRecord& record) = 0;
-    virtual void progress(long done, long total) = 0;
-};
-
 struct SensitivityRequest {
     std::optional<Pattern> pattern;  ///< absent: every pattern of the scene
     std::optional<double> level;     ///< with a pattern: its level; absent: the least energy
@@ -126,11 +116,22 @@ struct SensitivitySummary {
     bool interrupted = false;
 };
 
+/// Everything a study found, in the order it came.
+struct SensitivityRecords {
+    std::vector<OptimumRecord> optima;
+    std::vector<IntervalRecord> intervals;
+    std::vector<CurveRecord> curves;
+    std::vector<AblationRecord> ablations;
+    SensitivitySummary summary;
+};
+
 /// The study: prices and orbit derivatives of every optimum, the energy intervals, relaxation
 /// curves (each condition alone and in pairs) and the ablation funnel. Relaxation curves are
-/// left out for a closed gap, where no length tells how much is much.
-[[nodiscard]] SensitivitySummary sensitivity(const Scene& scene, const SensitivityRequest& request,
-                                             SensitivitySink& sink, const std::function<bool()>& keep_going);
+/// left out for a closed gap, where no length tells how much is much. `progress` is told how many patterns of how many
+/// are done.
+[[nodiscard]] SensitivityRecords sensitivity(const Scene& scene, const SensitivityRequest& request,
+                                             const std::function<bool()>& keep_going,
+                                             const std::function<void(long done, long total)>& progress = {});
 
 /// All derivatives of one optimum; `level` absent: of its energy (objective min_energy).
 [[nodiscard]] OptimumRecord optimum_record(const Orbit& orbit, int gap_sign, Objective objective,
