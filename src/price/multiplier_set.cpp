@@ -94,43 +94,41 @@ double MultiplierSet::residual() const {
     return balance.norm() / scale_;
 }
 
-// Least cost . y over the set.
-MultiplierSet::Greatest MultiplierSet::least_over_set(const Eigen::VectorXd& cost) const {
-    using Answer = Greatest::Status;
-    Greatest result;
+// Least cost . y over the set, where the linear program has an answer that its dual certifies.
+std::optional<Eigen::VectorXd> MultiplierSet::certified_least(const Eigen::VectorXd& cost) const {
     const auto count = cost.size();
-    const auto rank = system_.rows();
-    if (status_ == Status::one || count == 0) return {Answer::finite, cost.dot(y_), y_};
-
-    // Unbounded if and only if a ray r >= 0, system r = 0 has cost . r < 0: minus the residual of
-    // cost on { system' z + s, s >= 0 } is the steepest one.
-    Eigen::MatrixXd dual_cone(count, 2 * rank + count);
-    dual_cone << system_.transpose(), -system_.transpose(), Eigen::MatrixXd::Identity(count, count);
-    const NonnegativeSolution nearest = nonnegative_least_squares(dual_cone, cost);
-    const Magnitude excess = magnitude_(nearest.residual.norm() / std::max(cost.norm(), 1e-300));
-    if (excess == Magnitude::positive) return {Answer::infinite, 0, {}};
-    if (excess == Magnitude::unclear || !nearest.converged) return result;
-
-    LinearProgram program{system_, target_, target_, Eigen::VectorXd::Zero(count),
-                          Eigen::VectorXd::Constant(count, no_bound)};
+    const LinearProgram program{system_, target_, target_, Eigen::VectorXd::Zero(count),
+                                Eigen::VectorXd::Constant(count, no_bound)};
     const LinearSolution solution = LinearSolver(program).minimise(cost);
-    if (solution.status != LinearStatus::optimal) return result;
+    if (solution.status != LinearStatus::optimal) return std::nullopt;
     std::vector<Eigen::Index> support;
     for (Eigen::Index i = 0; i < count; ++i) {
         if (solution.x[i] > certificate_tolerance * scale_) support.push_back(i);
     }
     Eigen::VectorXd y = Eigen::VectorXd::Zero(count);
-    if (!support.empty()) {
-        y(support) = least_squares(system_(Eigen::all, support), target_);
-    }
+    if (!support.empty()) y(support) = least_squares(system_(Eigen::all, support), target_);
     const Eigen::VectorXd& z = solution.row_dual;
     const double size = 1.0 + cost.norm();
     const bool primal = (system_ * y - target_).norm() <= certificate_tolerance * scale_ &&
                         smallest(y) >= -certificate_tolerance * scale_;
     const bool dual = smallest(cost - system_.transpose() * z) >= -certificate_tolerance * size;
     const bool tight = std::abs(cost.dot(y) - target_.dot(z)) <= certificate_tolerance * size * (scale_ + y.norm());
-    if (!primal || !dual || !tight) return result;
-    return {Answer::finite, cost.dot(y), y};
+    return primal && dual && tight ? std::optional(y) : std::nullopt;
+}
+
+MultiplierSet::Greatest MultiplierSet::least_over_set(const Eigen::VectorXd& cost) const {
+    using Answer = Greatest::Status;
+    const auto count = cost.size();
+    if (status_ == Status::one || count == 0) return {Answer::finite, cost.dot(y_), y_};
+    if (const auto y = certified_least(cost)) return {Answer::finite, cost.dot(*y), *y};
+    // Unbounded if and only if a ray r >= 0, system r = 0 has cost . r < 0: minus the residual of
+    // cost on { system' z + s, s >= 0 } is the steepest one.
+    Eigen::MatrixXd dual_cone(count, 2 * system_.rows() + count);
+    dual_cone << system_.transpose(), -system_.transpose(), Eigen::MatrixXd::Identity(count, count);
+    const NonnegativeSolution nearest = nonnegative_least_squares(dual_cone, cost);
+    const Magnitude excess = magnitude_(nearest.residual.norm() / std::max(cost.norm(), 1e-300));
+    if (excess == Magnitude::positive) return {Answer::infinite, 0, {}};
+    return {};
 }
 
 MultiplierSet::Greatest MultiplierSet::greatest(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {

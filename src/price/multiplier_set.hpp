@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 namespace nsma {
@@ -50,6 +52,7 @@ public:
     [[nodiscard]] Eigen::VectorXd greatest_normals() const;
 
 private:
+    [[nodiscard]] std::optional<Eigen::VectorXd> certified_least(const Eigen::VectorXd& cost) const;
     [[nodiscard]] Greatest least_over_set(const Eigen::VectorXd& cost) const;
 
     Eigen::MatrixXd normals_, smooth_;
