@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "motion_waves.hpp"
+#include "minimal_period.hpp"
 #include "nsma/orbit/conditions.hpp"
 
 namespace nsma {
@@ -18,7 +18,7 @@ Classification classify(const Orbit& orbit, double tolerance) {
     const Kernel& kernel = orbit.kernel;
     const Pattern& pattern = kernel.pattern;
     const int period = pattern.period_steps();
-    const Eigen::VectorXd waves = motion_waves(orbit);
+    const Eigen::VectorXd waves = orbit.kernel.waves(orbit.beta);
     const double silence = tolerance * waves.cwiseAbs().maxCoeff();
     const Eigen::VectorXd tip = tip_history(kernel, orbit.beta);
     const int gap_sign = orbit.bar.gap_sign();

@@ -82,8 +82,7 @@ Eigen::VectorXd tip_history(const Kernel& kernel, const Eigen::VectorXd& beta) {
     Eigen::VectorXd history(period + 1);
     history[0] = contact;
     for (int n = 0; n + 1 < free_steps; ++n) {
-        const int column = kernel.column(n);
-        history[n + 1] = history[n] + (column >= 0 ? 2.0 * kernel.sign[index(n)] * beta[column] : 0.0);
+        history[n + 1] = history[n] + 2.0 * kernel.wave(beta, n);
     }
     history.tail(period + 1 - free_steps).setConstant(contact);  // n = r..n_T
     return history;

@@ -43,6 +43,11 @@ Kernel exact_kernel(const Pattern& pattern) {
     return kernel;
 }
 
+Eigen::VectorXd Kernel::waves(const Eigen::VectorXd& amplitudes) const {
+    return Eigen::VectorXd::NullaryExpr(pattern.period_steps(),
+                                        [&](Eigen::Index n) { return wave(amplitudes, static_cast<int>(n)); });
+}
+
 Eigen::MatrixXd wave_basis(const Kernel& kernel) {
     const int window = 2 * kernel.pattern.cells;
     const int period = kernel.pattern.period_steps();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion_waves.hpp"
+#include "minimal_period.hpp"
 #include "nsma/orbit/conditions.hpp"
 
 namespace nsma {
@@ -91,7 +91,7 @@ bool precedes(const std::vector<double>& a, const std::vector<double>& b, double
 }  // namespace
 
 std::optional<LabelledMotion> least_label(const Orbit& orbit, double tolerance) {
-    const Eigen::VectorXd waves = motion_waves(orbit);
+    const Eigen::VectorXd waves = orbit.kernel.waves(orbit.beta);
     const double silence = tolerance * waves.cwiseAbs().maxCoeff();
     if (silence == 0) return std::nullopt;
     const Eigen::VectorXd tip = tip_history(orbit.kernel, orbit.beta);

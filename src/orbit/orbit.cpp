@@ -9,21 +9,6 @@
 
 namespace nsma {
 
-namespace {
-
-/// b_n [m/s] over one period.
-Eigen::VectorXd waves(const Orbit& orbit) {
-    const Eigen::VectorXd alpha = amplitudes(orbit);
-    Eigen::VectorXd result(orbit.kernel.pattern.period_steps());
-    for (int n = 0; n < result.size(); ++n) {
-        const int column = orbit.kernel.column(n);
-        result[n] = column >= 0 ? orbit.kernel.sign[static_cast<std::size_t>(n)] * alpha[column] : 0.0;
-    }
-    return result;
-}
-
-}  // namespace
-
 Orbit make_orbit(const Bar& bar, const Kernel& kernel, const Eigen::VectorXd& beta) {
     validate(bar);
     validate(kernel.pattern);
@@ -46,7 +31,7 @@ State initial_state(const Orbit& orbit) {
     const int cells = orbit.kernel.pattern.cells;
     const int period = orbit.kernel.pattern.period_steps();
     const double z = orbit.bar.impedance();
-    const Eigen::VectorXd b = waves(orbit);
+    const Eigen::VectorXd b = orbit.kernel.waves(amplitudes(orbit));
     State state(2 * cells);
     for (int i = 1; i <= cells; ++i) {
         const double toward = b[(cells - i) % period];
@@ -74,7 +59,8 @@ Eigen::VectorXd contact_force(const Orbit& orbit) {
     const int free_steps = orbit.kernel.pattern.free_steps;
     const int contact_steps = orbit.kernel.pattern.contact_steps;
     Eigen::VectorXd force = Eigen::VectorXd::Zero(free_steps + contact_steps);
-    force.tail(contact_steps) = (-2.0 * orbit.bar.impedance() * orbit.bar.area) * waves(orbit).tail(contact_steps);
+    const Eigen::VectorXd b = orbit.kernel.waves(amplitudes(orbit));
+    force.tail(contact_steps) = (-2.0 * orbit.bar.impedance() * orbit.bar.area) * b.tail(contact_steps);
     return force;
 }
 
@@ -82,7 +68,7 @@ Field field(const Orbit& orbit) {
     const int cells = orbit.kernel.pattern.cells;
     const int period = orbit.kernel.pattern.period_steps();
     const double z = orbit.bar.impedance();
-    const Eigen::VectorXd b = waves(orbit);
+    const Eigen::VectorXd b = orbit.kernel.waves(amplitudes(orbit));
     Field result{Eigen::MatrixXd(cells, period), Eigen::MatrixXd(cells, period)};
     for (int n = 0; n < period; ++n) {
         for (int i = 1; i <= cells; ++i) {

@@ -59,18 +59,14 @@ private:
         const Kernel& kernel = set_.kernel;
         const int period = kernel.pattern.period_steps();
         const int free_steps = kernel.pattern.free_steps;
-        const auto wave_of = [&](const VectorXd& beta, int n) {
-            const int column = kernel.column(n % period);
-            return column < 0 ? 0.0 : kernel.sign[static_cast<std::size_t>(n % period)] * beta[column];
-        };
-        const auto wave = [&](int n) { return wave_of(beta_, n); };
+        const auto wave = [&](int n) { return kernel.wave(beta_, n); };
         // The amplitudes of a motion given by its waves, if its waves are those of the kernel.
         const auto take = [&](const auto& moved) {
             VectorXd beta(beta_.size());
             for (Eigen::Index j = 0; j < beta.size(); ++j)
                 beta[j] = moved(kernel.class_of[static_cast<std::size_t>(j)]);
             for (int n = 0; n < period; ++n) {
-                if (std::abs(moved(n) - wave_of(beta, n)) > same * size_) return;
+                if (std::abs(moved(n) - kernel.wave(beta, n)) > same * size_) return;
             }
             add(beta);
         };

@@ -23,6 +23,14 @@ struct Kernel {
     [[nodiscard]] int dimension() const { return static_cast<int>(class_of.size()); }  ///< m
     /// Column of alpha that step n carries, or -1; n in [0, n_T).
     [[nodiscard]] int column(int n) const { return amplitude_of[static_cast<std::size_t>(n % classes)]; }
+    /// b_n of the motion with these amplitudes (size m), in their unit; any n >= 0.
+    [[nodiscard]] double wave(const Eigen::VectorXd& amplitudes, int n) const {
+        const int step = n % pattern.period_steps();
+        const int j = column(step);
+        return j < 0 ? 0.0 : sign[static_cast<std::size_t>(step)] * amplitudes[j];
+    }
+    /// b_n over one period, size n_T.
+    [[nodiscard]] Eigen::VectorXd waves(const Eigen::VectorXd& amplitudes) const;
 };
 
 /// Walks the g cycles, O(n_T). The sign at the smallest step of each live class is +1.
