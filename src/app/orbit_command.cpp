@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 
+#include "nsma/search/pattern_problem.hpp"
 #include "nsma/report/orbit_json.hpp"
 #include "report/record_values.hpp"
 

@@ -7,6 +7,7 @@
 #include "kind_counts.hpp"
 #include "progress.hpp"
 
+#include "nsma/search/pattern_problem.hpp"
 #include "nsma/report/input_error.hpp"
 #include "report/certificate_file.hpp"
 

@@ -124,64 +124,47 @@ Eigen::VectorXd OrbitProgram::point(const Eigen::VectorXd& gamma) const {
     return x;
 }
 
-OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Objective objective,
-                           std::optional<double> level, double reference_energy, const Eigen::VectorXd& reference) {
-    const bool extreme = is_extreme(objective);
-    if (extreme == level.has_value()) {
-        throw std::invalid_argument(std::string("level: expected ") + (extreme ? "none" : "one") + " for objective " +
-                                    std::string(name(objective)));
+OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Objective objective, double level,
+                           const Eigen::VectorXd& reference) {
+    if (is_extreme(objective)) {
+        throw std::invalid_argument("objective: expected one at an energy level, got " + std::string(name(objective)));
     }
-    const double energy = level.value_or(reference_energy);
-    if (!(energy > 0) || !std::isfinite(energy)) {
-        throw std::invalid_argument("level: expected a finite number > 0, got " + std::to_string(energy));
+    if (!(level > 0) || !std::isfinite(level)) {
+        throw std::invalid_argument("level: expected a finite number > 0, got " + std::to_string(level));
+    }
+    const int window = 2 * kernel.pattern.cells;
+    if (objective == Objective::nearest && reference.size() != window) {
+        throw std::invalid_argument("reference: expected size " + std::to_string(window) + ", got " +
+                                    std::to_string(reference.size()));
     }
     OrbitProgram result;
-    result.scale = std::sqrt(energy / reduction.energy_factor);
+    result.scale = std::sqrt(level / reduction.energy_factor);
     set_constraints(result, reduction, objective == Objective::least_force);
     auto& program = result.program;
     const auto variables = program.variables();
     program.gradient = Eigen::VectorXd::Zero(variables);
     program.hessian.resize(variables, variables);
-    if (level) program.sphere_variables = result.orbit_variables;
+    program.sphere_variables = result.orbit_variables;
 
-    const int window = 2 * kernel.pattern.cells;
     const Waves wave(reduction, kernel);
-    // In x, 2N sum b^2 over one window is `energy` |x|^2; objectives are divided by `energy`.
-    const double unit = window * result.scale * result.scale / energy;
+    // In x, 2N sum b^2 over one window is `level` |x|^2; objectives are divided by `level`.
+    const double unit = window * result.scale * result.scale / level;
     std::vector<Triplet> hessian;
-    result.objective_unit = energy;
-    switch (objective) {
-        case Objective::least_shock:
-            for (int n = 0; n < kernel.pattern.period_steps(); ++n) {
-                add_square(hessian, unit, wave(n + 1), wave(n));
-            }
-            break;
-        case Objective::nearest: {
-            if (reference.size() != window) {
-                throw std::invalid_argument("reference: expected size " + std::to_string(window) + ", got " +
-                                            std::to_string(reference.size()));
-            }
-            const Eigen::VectorXd target = reference / result.scale;
-            program.constant = unit * target.squaredNorm();
-            for (int n = 0; n < window; ++n) {
-                const Term term = wave(n);
-                if (term.variable < 0) continue;
-                hessian.emplace_back(term.variable, term.variable, 2.0 * unit);
-                program.gradient[term.variable] -= 2.0 * unit * term.factor * target[n];
-            }
-            break;
+    result.objective_unit = level;
+    if (objective == Objective::least_shock) {
+        for (int n = 0; n < kernel.pattern.period_steps(); ++n) add_square(hessian, unit, wave(n + 1), wave(n));
+    } else if (objective == Objective::nearest) {
+        const Eigen::VectorXd target = reference / result.scale;
+        program.constant = unit * target.squaredNorm();
+        for (int n = 0; n < window; ++n) {
+            const Term term = wave(n);
+            if (term.variable < 0) continue;
+            hessian.emplace_back(term.variable, term.variable, 2.0 * unit);
+            program.gradient[term.variable] -= 2.0 * unit * term.factor * target[n];
         }
-        case Objective::least_force:
-            program.gradient[variables - 1] = 1.0;
-            result.objective_unit = window * result.scale;
-            break;
-        case Objective::min_energy:
-        case Objective::max_energy: {
-            const double sign = objective == Objective::min_energy ? 1.0 : -1.0;
-            for (int j = 0; j < result.orbit_variables; ++j) hessian.emplace_back(j, j, 2.0 * sign);
-            result.objective_unit = sign * energy;
-            break;
-        }
+    } else {
+        program.gradient[variables - 1] = 1.0;
+        result.objective_unit = window * result.scale;
     }
     program.hessian.setFromTriplets(hessian.begin(), hessian.end());
     return result;
@@ -189,28 +172,25 @@ OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Obj
 
 double objective_of_waves(const Kernel& kernel, Objective objective, const Eigen::VectorXd& beta,
                           const Eigen::VectorXd& reference) {
-    const int steps = kernel.pattern.period_steps();
-    const double window = 2.0 * kernel.pattern.cells;
-    const auto wave = [&](int n) {
-        n %= steps;
-        const int column = kernel.column(n);
-        return column < 0 ? 0.0 : kernel.sign[static_cast<std::size_t>(n)] * beta[column];
-    };
+    const int period = kernel.pattern.period_steps();
+    const int window = 2 * kernel.pattern.cells;
+    const auto wave = [&](int n) { return kernel.wave(beta, n); };
     double sum = 0;
     switch (objective) {
         case Objective::least_shock:
-            for (int n = 0; n < steps; ++n) sum += std::pow(wave(n + 1) - wave(n), 2);
-            return window * sum;
+            for (int n = 0; n < period; ++n) sum += std::pow(wave(n + 1) - wave(n), 2);
+            break;
         case Objective::nearest:
-            for (int n = 0; n < 2 * kernel.pattern.cells; ++n) sum += std::pow(wave(n) - reference[n], 2);
-            return window * sum;
+            for (int n = 0; n < window; ++n) sum += std::pow(wave(n) - reference[n], 2);
+            break;
         case Objective::least_force:
-            for (int n = kernel.pattern.free_steps; n < steps; ++n) sum = std::max(sum, std::abs(wave(n)));
-            return window * sum;
+            for (int n = kernel.pattern.free_steps; n < period; ++n) sum = std::max(sum, std::abs(wave(n)));
+            break;
         default:
-            for (int n = 0; n < 2 * kernel.pattern.cells; ++n) sum += std::pow(wave(n), 2);
-            return window * sum;
+            for (int n = 0; n < window; ++n) sum += std::pow(wave(n), 2);
+            break;
     }
+    return window * sum;
 }
 
 }  // namespace nsma

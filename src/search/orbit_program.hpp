@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include <Eigen/Core>
 
 #include "numerics/program.hpp"
@@ -23,14 +21,11 @@ struct OrbitProgram {
     [[nodiscard]] Eigen::VectorXd point(const Eigen::VectorXd& gamma) const;
 };
 
-/// Builds the program. `level` (E/E_unit, > 0) is the sphere; without it (min_energy,
-/// max_energy) unknowns are scaled by `reference_energy` instead. `reference` is the window
-/// b_0..b_{2N-1} of the orbit to stay near, in units u/dt (size 2N; `nearest` only).
-/// Source: [1] COND1-3; objectives as documented at Objective. Throws std::invalid_argument on
-/// a missing or misplaced level or reference.
+/// Builds the program of a level (E/E_unit, > 0). `reference` is the window b_0..b_{2N-1} of the orbit to stay near, in
+/// units u/dt (size 2N; `nearest` only). Source: [1] COND1-3; objectives as documented at Objective. Throws
+/// std::invalid_argument on an objective that is the energy itself, a bad level or reference.
 [[nodiscard]] OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Objective objective,
-                                         std::optional<double> level, double reference_energy,
-                                         const Eigen::VectorXd& reference = {});
+                                         double level, const Eigen::VectorXd& reference = {});
 
 /// Objective of a reduced point in reported units, straight from the wave amplitudes; the
 /// program's own value is checked against it.

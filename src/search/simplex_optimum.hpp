@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "nsma/set/reduction.hpp"
+#include "nsma/set/admissible_set.hpp"
+#include "nsma/set/objective.hpp"
 
 namespace nsma {
 
@@ -29,5 +30,10 @@ struct SimplexLevel {
 /// The closure of the objective `least_shock`: 0 unless every class of the kernel is live, so that the last of a round
 /// meets the first of the next. The reduction must be of a simplex.
 [[nodiscard]] double shock_closure(const Kernel& kernel, const Reduction& reduction);
+
+/// The best reduced point of a set that is a simplex at a level (E/E_unit) it attains. `reference`: the window
+/// b_0..b_{2N-1} of `nearest`.
+[[nodiscard]] Eigen::VectorXd simplex_optimum(const Kernel& kernel, const AdmissibleSet& set, Objective objective,
+                                              double level, const Eigen::VectorXd& reference);
 
 }  // namespace nsma

@@ -8,14 +8,19 @@
 namespace nsma {
 namespace {
 
-// t >= 0 with |from + t direction|^2 = square, from inside the ball. Citardauq form: no
+// Distance beyond a row, relative to the size of the point, that rounding explains.
+constexpr double row_rounding = 1e-13;
+
+// The point of the segment with |x|^2 = square, from inside the ball to outside. Citardauq form: no
 // cancellation when `from` is close to the sphere.
-double crossing(const Eigen::VectorXd& from, const Eigen::VectorXd& direction, double square) {
+Eigen::VectorXd crossing(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double square) {
+    const Eigen::VectorXd direction = to - from;
     const double a = direction.squaredNorm();
     const double b = from.dot(direction);
     const double c = from.squaredNorm() - square;  // <= 0
     const double root = std::sqrt(std::max(b * b - a * c, 0.0));
-    return b > 0 ? -c / (b + root) : (root - b) / a;
+    const double t = b > 0 ? -c / (b + root) : (root - b) / a;
+    return from + std::min(t, 1.0) * direction;
 }
 
 }  // namespace
@@ -35,19 +40,39 @@ LevelPoints::LevelPoints(const AdmissibleSet& set, double level) : set_(set), le
 std::optional<Eigen::VectorXd> LevelPoints::reach(const Eigen::VectorXd& gamma) const {
     const double square = level_ / set_.reduction.energy_factor;
     const double here = gamma.squaredNorm();
-    if (set_.reduction.gap_sign == 0)
-        return std::sqrt(square) * (here > 0 ? Eigen::VectorXd(gamma.normalized()) : set_.ray);
+    if (set_.reduction.gap_sign == 0) return std::sqrt(square) * (here > 0 ? gamma.normalized() : set_.ray);
     if (here > square) {
-        // Backward from the base, which lies below the level.
-        const Eigen::VectorXd direction = gamma - base_;
         if (base_.squaredNorm() > square) return std::nullopt;
-        return base_ + std::min(crossing(base_, direction, square), 1.0) * direction;
+        return crossing(base_, gamma, square);
     }
     const Eigen::VectorXd& top = set_.vertices.front();
     if (top.squaredNorm() < square) return std::nullopt;
-    const Eigen::VectorXd direction = top - gamma;
-    if (direction.squaredNorm() == 0) return gamma;
-    return gamma + std::min(crossing(gamma, direction, square), 1.0) * direction;
+    return top == gamma ? gamma : crossing(gamma, top, square);
+}
+
+Eigen::VectorXd LevelPoints::admissible_near(Eigen::VectorXd gamma) const {
+    const Reduction& data = set_.reduction;
+    const auto bounded = [&](Eigen::Index j) { return data.bounded[static_cast<std::size_t>(j)] != 0; };
+    for (Eigen::Index j = 0; j < gamma.size(); ++j) {
+        if (bounded(j)) gamma[j] = std::max(gamma[j], 0.0);
+    }
+    const Eigen::VectorXd w = data.contact_row.cast<double>();
+    if (w.squaredNorm() > 0) gamma += w * ((data.gap_sign - w.dot(gamma)) / w.squaredNorm());
+    double blend = 0;
+    const auto need = [&](double excess, double centre_slack) {
+        if (excess <= 0) return;
+        blend = std::max(blend, centre_slack > 0 ? excess / (excess + centre_slack) : 1.0);
+    };
+    const Eigen::MatrixXd rows = data.rows.cast<double>();
+    const Eigen::VectorXd values = rows * gamma;
+    const Eigen::VectorXd slacks = -(rows * centre_);
+    const double rounding = row_rounding * gamma.lpNorm<1>();
+    for (Eigen::Index i = 0; i < values.size(); ++i) need(values[i] - rounding, slacks[i]);
+    for (Eigen::Index j = 0; j < gamma.size(); ++j) {
+        if (bounded(j)) need(-gamma[j], centre_[j]);
+    }
+    if (blend > 0) gamma += std::min(blend, 1.0) * (centre_ - gamma);
+    return gamma;
 }
 
 Eigen::VectorXd LevelPoints::mixture(int seed) const {

@@ -26,16 +26,21 @@ public:
     /// The admissible point on the level that a segment from `gamma` (admissible) reaches.
     [[nodiscard]] std::optional<Eigen::VectorXd> reach(const Eigen::VectorXd& gamma) const;
 
-    /// An admissible point away from the rows that can be away from equality.
-    [[nodiscard]] const Eigen::VectorXd& centre() const { return centre_; }
+    /// An admissible point near one that may be off: into the bounds, onto COND2, then toward an inner point until no
+    /// row is crossed.
+    [[nodiscard]] Eigen::VectorXd admissible_near(Eigen::VectorXd gamma) const;
+    /// ... and on the level.
+    [[nodiscard]] std::optional<Eigen::VectorXd> restored(const Eigen::VectorXd& gamma) const {
+        return reach(admissible_near(gamma));
+    }
 
 private:
     [[nodiscard]] Eigen::VectorXd mixture(int seed) const;
 
     const AdmissibleSet& set_;
     double level_;
-    Eigen::VectorXd base_;  // the least-energy point; the rest state for a closed gap
-    Eigen::VectorXd centre_;
+    Eigen::VectorXd base_;    // the least-energy point; the rest state for a closed gap
+    Eigen::VectorXd centre_;  // away from the rows that can be away from equality
 };
 
 }  // namespace nsma

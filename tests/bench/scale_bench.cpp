@@ -18,6 +18,7 @@
 #include "numerics/solver.hpp"
 #include "set/level_points.hpp"
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
 #include "nsma/study/scan.hpp"
 #include "study/accuracy/accuracy.hpp"
@@ -120,8 +121,7 @@ void solve(benchmark::State& state, bool with_ipopt) {
     const PatternProblem problem =
         pattern_problem(accuracy_pattern(static_cast<int>(state.range(0)), 1), 1, {.prove = false});
     const double level = std::sqrt(*problem.interval.least * *problem.interval.greatest);
-    const OrbitProgram program =
-        orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, level, 0.0);
+    const OrbitProgram program = orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, level);
     const LevelPoints points(problem.set, level);
     const Eigen::VectorXd start = program.point(*points.start(1));
     IpoptSolver ipopt;

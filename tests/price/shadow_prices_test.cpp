@@ -12,6 +12,7 @@
 #include "time_reversed.hpp"
 
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
 #include "price/relaxed_solver.hpp"
 #include "price/tied_optima.hpp"

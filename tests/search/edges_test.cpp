@@ -8,6 +8,7 @@
 #include "../proof/truth.hpp"
 
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 
 namespace {
 

@@ -24,8 +24,8 @@
 #include "numerics/solver.hpp"
 #include "set/level_points.hpp"
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
-#include "search/restore.hpp"
 
 extern char** environ;  // NOLINT: the name POSIX gives it
 
@@ -161,7 +161,7 @@ TEST(FailureTable, Row02TheSameEqualityTwice) {
     const Pattern pattern{20, 48, 16};  // COND2 holds at 16 contact steps and at step 0
     const auto problem = pattern_problem(pattern, 1);
     const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock,
-                                             1.5 * *problem.interval.least, *problem.interval.least);
+                                             1.5 * *problem.interval.least);
     EXPECT_EQ(program.program.equalities.rows(), 1);
     EXPECT_GE(problem.set.reduction.removed.contact_duplicates, 16);
     expect_sound(solve(pattern, 1, {.level = 1.5 * *problem.interval.least, .reference = {}}));
@@ -208,15 +208,18 @@ TEST(FailureTable, Row05SlsqpWithTheEnergyAsObjective) {
         }
         // Asked all the same, its word is not taken: what it holds is restored and polished to the least energy.
         const auto problem = pattern_problem(pattern, 1);
-        const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::min_energy,
-                                                 std::nullopt, *interval.least);
+        auto program =
+            nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, *interval.least);
+        program.program.hessian.setIdentity();
+        program.program.hessian *= 2.0;
+        program.program.sphere_variables = 0;
+        const nsma::LevelPoints points(problem.set, *interval.least);
         for (const auto& vertex : problem.set.vertices) {
             const auto outcome =
                 nsma::solve_with_nlopt(nsma::NloptMethod::slsqp, program.program, program.point(vertex), {});
             ASSERT_GT(outcome.iterations, 0) << outcome.status;
-            const auto near = nsma::restored(program, problem.set, nullptr, outcome.x);
-            ASSERT_TRUE(near);
-            const auto polished = nsma::polish(program.program, program.point(*near));
+            const VectorXd near = points.admissible_near(program.gamma(outcome.x));
+            const auto polished = nsma::polish(program.program, program.point(near));
             EXPECT_TRUE(polished.feasible && polished.stationary);
             EXPECT_NEAR(polished.objective * program.objective_unit, *interval.least, 1e-9 * *interval.least);
         }
@@ -227,8 +230,7 @@ TEST(FailureTable, Row06NeverStartsAtRest) {
     for (const Pattern& pattern : {Pattern{6, 16, 4}, {6, 23, 1}, {20, 48, 16}}) {
         const auto problem = pattern_problem(pattern, 1);
         const double level = 1.7 * *problem.interval.least;
-        const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, level,
-                                                 *problem.interval.least);
+        const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::least_shock, level);
         const nsma::LevelPoints points(problem.set, level);
         for (int k = 0; k < 20; ++k) {
             const auto begin = points.start(k);

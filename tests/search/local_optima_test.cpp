@@ -7,6 +7,7 @@
 #include "numerics/polish.hpp"
 #include "set/level_points.hpp"
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
 
 namespace {
@@ -30,8 +31,8 @@ TEST_P(LocalOptima, AreFoundAndSettled) {
     const nsma::LevelPoints points(problem.set, energy);
     const auto target = nsma::make_orbit(nsma::Bar{}, problem.kernel, problem.set.reduction.beta(*points.start(5)));
     const Eigen::VectorXd reference = 0.7 * nsma::reference_window(target);  // not on the level: no distance is zero
-    const auto orbit = nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::nearest, energy,
-                                           *problem.interval.least, reference);
+    const auto orbit =
+        nsma::orbit_program(problem.set.reduction, problem.kernel, Objective::nearest, energy, reference);
     std::vector<double> ends;
     for (int k = 0; k < 40; ++k) {
         const auto start = points.start(k);

@@ -113,13 +113,10 @@ TEST(OrbitProgram, ProgramValueIsTheObjectiveOfTheWaves) {
         const Kernel kernel = exact_kernel(pattern);
         const Reduction reduction = reduce(conditions(kernel, gap_sign));
         if (reduction.variables() == 0) continue;
-        for (const Objective objective : {Objective::least_shock, Objective::nearest, Objective::least_force,
-                                          Objective::min_energy, Objective::max_energy}) {
-            const bool extreme = objective == Objective::min_energy || objective == Objective::max_energy;
+        for (const Objective objective : {Objective::least_shock, Objective::nearest, Objective::least_force}) {
             const double level = 3.7;
             const VectorXd reference = nsma::wave_basis(kernel) * reduction.beta(random_gamma(reduction, random));
-            const auto program = orbit_program(reduction, kernel, objective,
-                                               extreme ? std::nullopt : std::optional(level), level, reference);
+            const auto program = orbit_program(reduction, kernel, objective, level, reference);
             ASSERT_NO_THROW(validate(program.program));
             for (int trial = 0; trial < 10; ++trial) {
                 VectorXd gamma = random_gamma(reduction, random);
@@ -128,7 +125,7 @@ TEST(OrbitProgram, ProgramValueIsTheObjectiveOfTheWaves) {
                 EXPECT_LT((program.gamma(x) - gamma).norm(), rounding * gamma.norm());
                 const double value = objective_of_waves(kernel, objective, reduction.beta(gamma), reference);
                 EXPECT_NEAR(program.objective_unit * program.program.objective(x), value, rounding * (1 + value));
-                // A point at the level is on the unit sphere, where there is one.
+                // A point at the level is on the unit sphere.
                 EXPECT_NEAR(program.program.sphere_residual(x), 0, rounding);
             }
         }
@@ -141,7 +138,7 @@ TEST(OrbitProgram, ConstraintsAreTheConditionsOfTheTip) {
         const Kernel kernel = exact_kernel(pattern);
         const Reduction reduction = reduce(conditions(kernel, gap_sign));
         if (reduction.variables() == 0) continue;
-        const auto program = orbit_program(reduction, kernel, Objective::least_shock, 2.0, 1.0);
+        const auto program = orbit_program(reduction, kernel, Objective::least_shock, 2.0);
         for (int trial = 0; trial < 20; ++trial) {
             const VectorXd gamma = random_gamma(reduction, random);
             const VectorXd tip = nsma::tip_history(kernel, reduction.beta(gamma));
@@ -168,7 +165,7 @@ TEST(OrbitProgram, PeakForceIsTheLeastUnknownAboveEveryContactWave) {
     std::mt19937 random(12);
     const Kernel kernel = exact_kernel({6, 16, 4});
     const Reduction reduction = reduce(conditions(kernel, 1));
-    const auto program = orbit_program(reduction, kernel, Objective::least_force, 12.0, 1.0);
+    const auto program = orbit_program(reduction, kernel, Objective::least_force, 12.0);
     EXPECT_EQ(program.program.variables(), 5);
     EXPECT_EQ(program.program.sphere_variables, 4);  // the peak is not on the sphere
     VectorXd gamma = random_gamma(reduction, random);
@@ -182,22 +179,20 @@ TEST(OrbitProgram, PeakForceIsTheLeastUnknownAboveEveryContactWave) {
     EXPECT_LT((program.program.inequalities * x - program.program.inequality_values).maxCoeff(), rounding);
 }
 
-TEST(OrbitProgram, RefusesMissingOrMisplacedLevelsAndReferences) {
+TEST(OrbitProgram, RefusesBadObjectivesLevelsAndReferences) {
     const Kernel kernel = exact_kernel({6, 16, 4});
     const Reduction reduction = reduce(conditions(kernel, 1));
-    const auto build = [&](Objective objective, std::optional<double> level, double energy, const VectorXd& reference) {
-        (void)orbit_program(reduction, kernel, objective, level, energy, reference);
+    const auto build = [&](Objective objective, double level, const VectorXd& reference) {
+        (void)orbit_program(reduction, kernel, objective, level, reference);
     };
-    EXPECT_THROW(build(Objective::least_shock, std::nullopt, 1.0, {}), std::invalid_argument);
-    EXPECT_THROW(build(Objective::min_energy, 10.0, 1.0, {}), std::invalid_argument);
-    EXPECT_THROW(build(Objective::max_energy, 10.0, 1.0, {}), std::invalid_argument);
-    EXPECT_THROW(build(Objective::least_shock, 0.0, 1.0, {}), std::invalid_argument);
-    EXPECT_THROW(build(Objective::least_shock, -1.0, 1.0, {}), std::invalid_argument);
-    EXPECT_THROW(build(Objective::least_shock, std::nan(""), 1.0, {}), std::invalid_argument);
-    EXPECT_THROW(build(Objective::max_energy, std::nullopt, 0.0, {}), std::invalid_argument);
-    EXPECT_THROW(build(Objective::nearest, 10.0, 1.0, {}), std::invalid_argument);
-    EXPECT_THROW(build(Objective::nearest, 10.0, 1.0, VectorXd::Zero(11)), std::invalid_argument);
-    EXPECT_NO_THROW(build(Objective::nearest, 10.0, 1.0, VectorXd::Zero(12)));
+    EXPECT_THROW(build(Objective::min_energy, 10.0, {}), std::invalid_argument);
+    EXPECT_THROW(build(Objective::max_energy, 10.0, {}), std::invalid_argument);
+    EXPECT_THROW(build(Objective::least_shock, 0.0, {}), std::invalid_argument);
+    EXPECT_THROW(build(Objective::least_shock, -1.0, {}), std::invalid_argument);
+    EXPECT_THROW(build(Objective::least_shock, std::nan(""), {}), std::invalid_argument);
+    EXPECT_THROW(build(Objective::nearest, 10.0, {}), std::invalid_argument);
+    EXPECT_THROW(build(Objective::nearest, 10.0, VectorXd::Zero(11)), std::invalid_argument);
+    EXPECT_NO_THROW(build(Objective::nearest, 10.0, VectorXd::Zero(12)));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "set/level_points.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
 
 namespace {

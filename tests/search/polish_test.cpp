@@ -10,6 +10,7 @@
 #include "nsma/set/admissible_set.hpp"
 #include "set/level_points.hpp"
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
 
 namespace {
@@ -185,7 +186,7 @@ TEST(Polish, OrbitProgramsDescendToKktPoints) {
         const auto kernel = nsma::exact_kernel(pattern);
         const auto set = nsma::admissible_set(nsma::reduce(nsma::conditions(kernel, 1)));
         const double level = 1.5 * *set.interval().least;
-        const auto program = nsma::orbit_program(set.reduction, kernel, nsma::Objective::least_shock, level, 1.0);
+        const auto program = nsma::orbit_program(set.reduction, kernel, nsma::Objective::least_shock, level);
         const nsma::LevelPoints points(set, level);
         double best = no_bound;
         double bound = -no_bound;
@@ -206,8 +207,8 @@ TEST(Polish, LeavesASaddle) {
     // Amplitudes (a, b, a, 0): stationary by symmetry; two neighbours are better.
     const auto problem = nsma::pattern_problem({10, 24, 8}, 1);
     const double level = 0.8 * *problem.interval.greatest;
-    const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel, nsma::Objective::least_shock, level,
-                                             *problem.interval.least);
+    const auto program =
+        nsma::orbit_program(problem.set.reduction, problem.kernel, nsma::Objective::least_shock, level);
     const double a = (4 - std::sqrt(16 - 24 * (1 - 0.8))) / 12;  // 2 a^2 + (1 - 2 a)^2 = 0.8
     VectorXd gamma = VectorXd::Zero(4);
     for (const auto& vertex : problem.set.vertices) {
@@ -230,8 +231,8 @@ TEST(Polish, ComesToTheOptimumCloseToTheLeastEnergy) {
             const auto problem = nsma::pattern_problem(pattern, sign);
             for (const double above : {1e-10, 1e-9, 1e-8, 1e-6, 1e-3}) {
                 const double level = *problem.interval.least * (1 + above);
-                const auto program = nsma::orbit_program(problem.set.reduction, problem.kernel,
-                                                         nsma::Objective::least_shock, level, *problem.interval.least);
+                const auto program =
+                    nsma::orbit_program(problem.set.reduction, problem.kernel, nsma::Objective::least_shock, level);
                 const nsma::LevelPoints points(problem.set, level);
                 const auto polished = polish(program.program, program.point(*points.start(0)));
                 EXPECT_TRUE(polished.stationary) << size << ' ' << sign << ' ' << above;

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 
 namespace {
 

@@ -75,7 +75,13 @@ TEST(LevelPoints, StartsAreAdmissibleAndOnTheLevel) {
                 EXPECT_NEAR(set.energy(*start), level, 1e-14 * level * 8);
                 expect_admissible(pattern, set, *start);
             }
-            expect_admissible(pattern, set, points.centre());
+            // Off in every way: beyond the bounds, the rows and COND2.
+            const VectorXd off = *points.start(10) + VectorXd::Random(set.least.size()) * set.least.norm();
+            expect_admissible(pattern, set, points.admissible_near(off));
+            const auto restored = points.restored(off);
+            ASSERT_TRUE(restored);
+            EXPECT_NEAR(set.energy(*restored), level, 1e-14 * level * 8);
+            expect_admissible(pattern, set, *restored);
         }
     }
 }
@@ -93,7 +99,7 @@ TEST(LevelPoints, RandomStartsDifferAndRepeat) {
 TEST(LevelPoints, ReachGoesUpAndDownFromAnyPoint) {
     const auto set = set_of({6, 16, 4}, 1);  // [9, 36]
     const LevelPoints points(set, 20);
-    for (const auto& from : {set.least, set.vertices.front(), points.centre()}) {
+    for (const auto& from : {set.least, set.vertices.front(), VectorXd((set.least + set.vertices.front()) / 2)}) {
         const auto reached = points.reach(from);
         ASSERT_TRUE(reached);
         EXPECT_NEAR(set.energy(*reached), 20, 1e-13);

@@ -11,6 +11,7 @@
 
 #include "set/level_points.hpp"
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "nsma/study/sensitivity/sensitivity.hpp"
 
 namespace {

@@ -13,6 +13,7 @@
 #include "../search/literal_program.hpp"
 
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "price/relaxed_solver.hpp"
 #include "nsma/study/sensitivity/sensitivity.hpp"
 

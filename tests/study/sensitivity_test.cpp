@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "nsma/search/pattern_problem.hpp"
 #include "price/relaxed_solver.hpp"
 
 namespace {

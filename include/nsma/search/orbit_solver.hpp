@@ -4,31 +4,15 @@
 #include <optional>
 
 #include "nsma/numerics/solver_options.hpp"
-#include "nsma/set/admissible_set.hpp"
-#include "nsma/proof/prove.hpp"
 #include "nsma/search/answer.hpp"
 
 namespace nsma {
 
 class IpoptSolver;
+struct PatternProblem;
 
-/// Everything about one pattern that no energy level changes: its kernel and admissible set.
-struct PatternProblem {
-    Kernel kernel;
-    AdmissibleSet set;
-    Proof proof;                        ///< empty when proofs were not asked for
-    Verdict verdict = Verdict::failed;  ///< trivial, inadmissible, admissible or failed
-    std::optional<PatternKind> kind;    ///< of an admissible pattern
-    EnergyInterval interval;            ///< exact where proved
-};
-
-struct PatternOptions {
-    bool prove = true;  ///< certify the verdict, the kind and the energy interval in exact arithmetic
-};
-
-/// Decides one pattern for a gap of the given sign. Throws std::invalid_argument on a bad
-/// pattern.
-[[nodiscard]] PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const PatternOptions& options = {});
+/// Relative difference of objectives that still agree.
+inline constexpr double agreement_tolerance = 1e-6;
 
 enum class SolverChoice {
     ipopt,
@@ -43,13 +27,11 @@ struct OrbitSolverOptions {
     SolverChoice solvers = SolverChoice::proof;
     /// Starts per solver while the optimum is not proved, >= 1; above 64 unknowns a quarter of them.
     int starts = 8;
-    double agreement_tolerance = 1e-6;  ///< relative difference of objectives that still agree
-    double raw_violation = 1e-4;        ///< a raw answer further out is a failure of its solver
-    double level_tolerance = 1e-15;     ///< relative; a level further outside the interval has no orbit
+    double raw_violation = 1e-4;  ///< a raw answer further out is a failure of its solver
     SolverOptions solver;
 };
 
-/// Whether Ipopt is asked at most levels, so that OrbitRequest::start saves time.
+/// Whether Ipopt runs at most levels, so that OrbitRequest::start saves time.
 [[nodiscard]] bool ipopt_is_usual(const OrbitSolverOptions& options);
 
 struct OrbitRequest {
@@ -75,13 +57,13 @@ public:
     /// of a wrong size, or a problem made for another gap sign; any other failure is in the answer.
     [[nodiscard]] OrbitAnswer solve(const Bar& bar, const PatternProblem& problem, const OrbitRequest& request);
 
-    /// Whether no orbit of such a pattern can have this energy, or none is known to: nothing is solved for it.
-    [[nodiscard]] bool outside(const EnergyInterval& interval, double level) const;
-
 private:
     OrbitSolverOptions options_;
     std::unique_ptr<IpoptSolver> ipopt_;
 };
+
+/// Whether no orbit of such a pattern can have this energy, or none is known to: nothing is solved for it.
+[[nodiscard]] bool outside(const EnergyInterval& interval, double level);
 
 /// The window b_0..b_{2N-1} of an orbit in units u/dt, as a reference for `nearest`.
 [[nodiscard]] Eigen::VectorXd reference_window(const Orbit& orbit);

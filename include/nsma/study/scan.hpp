@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "nsma/orbit/sieve.hpp"
-#include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "nsma/study/records.hpp"
 #include "nsma/study/scene.hpp"
 

@@ -8,7 +8,7 @@
 #include "nsma/wave/marcher.hpp"
 #include "wave/dense_wfem.hpp"
 #include "nsma/orbit/orbit.hpp"
-#include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 
 namespace nsma {
 namespace {

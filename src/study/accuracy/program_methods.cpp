@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "numerics/polish.hpp"
-#include "search/restore.hpp"
 
 namespace nsma {
 namespace {
@@ -137,10 +136,7 @@ ProgramCase solved_case(const Bar& bar, const PatternProblem& problem, Objective
     if (objective == Objective::nearest) {
         reference = reference_window(make_orbit(bar, problem.kernel, reduction.beta(problem.set.least)));
     }
-    const auto pose = [&] {
-        return orbit_program(reduction, problem.kernel, objective, level, problem.interval.least.value_or(1.0),
-                             reference);
-    };
+    const auto pose = [&] { return orbit_program(reduction, problem.kernel, objective, level, reference); };
     const auto pose_and_start = [&] {
         (void)pose();
         (void)LevelPoints(problem.set, level).start(0);
@@ -220,7 +216,7 @@ Trial MethodRunner::run_posed(const ProgramCase& on, const Program& posed, const
     trial.reported = claim == Claim::answer;
     if (raw.x.size() != on.program.program.variables() || !raw.x.allFinite()) return trial;
     Eigen::VectorXd gamma = on.program.gamma(raw.x);
-    const auto near = method_.polish ? restored(on.program, on.problem.set, &on.points, raw.x) : std::nullopt;
+    const auto near = method_.polish ? on.points.restored(gamma) : std::nullopt;
     if (near) {
         const Polished polished = polish(on.program.program, on.program.point(*near));
         if (polished.feasible) gamma = on.program.gamma(polished.x);

@@ -8,6 +8,7 @@
 #include "numerics/solver.hpp"
 #include "set/level_points.hpp"
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
 
 namespace nsma {

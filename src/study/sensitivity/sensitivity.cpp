@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "nsma/orbit/backbone.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "price/relaxed_solver.hpp"
 #include "price/tied_optima.hpp"
 

@@ -109,7 +109,7 @@ std::vector<WorkResult> SweepWorker::run(const std::vector<WorkUnit>& units) {
         results.push_back(run(unit));
         if (unit.place >= 0 || !is_solved(scene_.all_kinds, problem_.kind) || is_extreme(scene_.objective)) continue;
         for (std::size_t level = 0; level < scene_.levels.size() && brought < most_brought; ++level) {
-            if (!solver_.outside(problem_.interval, scene_.levels[level])) continue;
+            if (!outside(problem_.interval, scene_.levels[level])) continue;
             results.push_back(run(WorkUnit{unit.pattern, static_cast<int>(level) + 1, {}}));
             ++brought;
         }

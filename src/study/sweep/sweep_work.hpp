@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "nsma/search/orbit_solver.hpp"
+#include "nsma/search/pattern_problem.hpp"
 #include "nsma/study/records.hpp"
 #include "nsma/study/scene.hpp"
 

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+
+#include "nsma/orbit/kernel.hpp"
+#include "nsma/orbit/pattern_kind.hpp"
+#include "nsma/set/admissible_set.hpp"
+#include "nsma/proof/prove.hpp"
+#include "nsma/search/answer.hpp"
+
+namespace nsma {
+
+/// Everything about one pattern that no energy level changes: its kernel and admissible set.
+struct PatternProblem {
+    Kernel kernel;
+    AdmissibleSet set;
+    Proof proof;                        ///< empty when proofs were not asked for
+    Verdict verdict = Verdict::failed;  ///< trivial, inadmissible, admissible or failed
+    std::optional<PatternKind> kind;    ///< of an admissible pattern
+    EnergyInterval interval;            ///< exact where proved
+};
+
+struct PatternOptions {
+    bool prove = true;  ///< certify the verdict, the kind and the energy interval in exact arithmetic
+};
+
+/// Decides one pattern for a gap of the given sign. Throws std::invalid_argument on a bad
+/// pattern.
+[[nodiscard]] PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const PatternOptions& options = {});
+
+}  // namespace nsma

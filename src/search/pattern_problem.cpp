@@ -1,0 +1,43 @@
+#include "nsma/search/pattern_problem.hpp"
+
+namespace nsma {
+namespace {
+
+// The ends of the interval as the certificate proves them.
+void take_proved_ends(const Proof& proof, EnergyInterval& interval) {
+    const Certificate& certificate = proof.certificate;
+    if (proof.verdict_proved && certificate.energy_least) {
+        interval.least = to_double(*certificate.energy_least);
+        interval.least_exact = to_string(*certificate.energy_least);
+    }
+    if (certificate.energy_attained) interval.greatest = to_double(*certificate.energy_attained);
+    if (certificate.energy_bound) interval.bound = to_double(*certificate.energy_bound);
+    if (certificate.energy_attained && proof.exact_greatest()) {
+        interval.greatest_exact = to_string(*certificate.energy_attained);
+    }
+}
+
+}  // namespace
+
+PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const PatternOptions& options) {
+    validate(pattern);
+    PatternProblem problem;
+    problem.kernel = exact_kernel(pattern);
+    problem.set = admissible_set(reduce(conditions(problem.kernel, gap_sign)));
+    if (problem.kernel.dimension() == 0) {
+        problem.verdict = Verdict::trivial;
+    } else if (problem.set.status == AdmissibleSet::Status::empty) {
+        problem.verdict = Verdict::inadmissible;
+    } else if (problem.set.status == AdmissibleSet::Status::nonempty) {
+        problem.verdict = Verdict::admissible;
+        problem.kind = pattern_kind(pattern);
+    }
+    problem.interval = problem.set.interval();
+    if (options.prove) {
+        problem.proof = prove(problem.kernel, problem.set);
+        take_proved_ends(problem.proof, problem.interval);
+    }
+    return problem;
+}
+
+}  // namespace nsma
