@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <numeric>
 #include <optional>
-
-#include "set/known_set.hpp"
 
 namespace nsma {
 namespace {
@@ -21,31 +19,17 @@ RationalVector sparse(const Dense& dense) {
     return result;
 }
 
-// sum_{k<step} eps_k e_{column(k)} over all columns of beta.
-std::vector<int> partial_sum_row(const Kernel& kernel, int step) {
-    std::vector<int> row(static_cast<std::size_t>(kernel.dimension()), 0);
-    for (int k = 0; k < step; ++k) {
-        const int column = kernel.column(k);
-        if (column >= 0) row[static_cast<std::size_t>(column)] += kernel.sign[static_cast<std::size_t>(k)];
-    }
-    return row;
-}
-
 class Prover {
 public:
     Prover(const Kernel& kernel, const AdmissibleSet& set) : kernel_(kernel), set_(set), reduction_(set.reduction) {
         proof_.certificate.pattern = kernel.pattern;
         proof_.certificate.gap_sign = reduction_.gap_sign;
-        if (set.shape == Shape::chain) chain_ = chain_rows(reduction_);
     }
 
     Proof run() {
         auto& certificate = proof_.certificate;
         if (kernel_.dimension() == 0) {
             certificate.claim = Certificate::Claim::trivial;
-        } else if (set_.status == AdmissibleSet::Status::failed) {
-            proof_.unproved = set_.reason;
-            return std::move(proof_);
         } else {
             const bool empty = set_.status == AdmissibleSet::Status::empty;
             certificate.claim = empty ? Certificate::Claim::empty : Certificate::Claim::nonempty;
@@ -82,28 +66,16 @@ private:
     [[nodiscard]] Dense unreduced(const Dense& form) const {
         Dense result(static_cast<std::size_t>(reduction_.kernel_dimension));
         for (std::size_t j = 0; j < form.size(); ++j) {
-            result[static_cast<std::size_t>(reduction_.column[j])] = reduction_.flip[j] * form[j];
+            result[j] = reduction_.flip * form[j];
         }
         return result;
     }
 
-    // The rows that forced columns to zero, so often that they dominate `form` on those columns. What forces one live
-    // class forces them all, so that the set is then empty.
-    [[nodiscard]] RationalVector forcing_rows(const Dense& form) const {
-        const Conditions terms = conditions(kernel_, reduction_.gap_sign);
-        Dense rest = form;
-        std::map<int, Rational> rows;
-        // In reverse: a row may hold anything in columns that were forced before it.
-        for (auto zero = reduction_.forced.rbegin(); zero != reduction_.forced.rend(); ++zero) {
-            const auto c = static_cast<std::size_t>(zero->column);
-            const auto row = partial_sum_row(kernel_, zero->step);
-            const bool bounded_above = terms.bound_of[c] == Conditions::Sign::nonpositive;
-            if (bounded_above ? rest[c] >= 0 : rest[c] <= 0) continue;
-            const Rational times = rest[c] / row[c];
-            rows[zero->step] += times;
-            for (std::size_t k = 0; k < rest.size(); ++k) rest[k] -= times * row[k];
-        }
-        return {rows.begin(), rows.end()};
+    // The last of the rows that force columns to zero holds the sum of flip beta over all of them: so often that it
+    // dominates `times` that sum.
+    [[nodiscard]] RationalVector forcing_row(int times) const {
+        if (reduction_.forced.empty() || times <= 0) return {};
+        return {{reduction_.forced.back().step, times}};
     }
 
     // The least upper bound of form . gamma with exact multipliers.
@@ -123,8 +95,8 @@ private:
         for (std::size_t k = 1; k < form.size(); ++k) {
             const Rational difference = form[k - 1] - form[k];
             if (difference == 0) continue;
-            const int row = difference > 0 ? chain_.prefix[k] : chain_.suffix[k];
-            result.rows.emplace_back(reduction_.row_step[static_cast<std::size_t>(row)], abs(difference));
+            const std::size_t row = difference > 0 ? k - 1 : form.size() + k - 1;
+            result.rows.emplace_back(reduction_.row_step[row], abs(difference));
             if (difference < 0) rest += difference;
         }
         std::sort(result.rows.begin(), result.rows.end(),
@@ -137,24 +109,17 @@ private:
     // that delta w is a positive multiple of the sum of all columns, the row of that sum covers it.
     [[nodiscard]] RationalVector projection(bool empty) const {
         if (empty && set_.shape == Shape::chain) {
-            const int whole = chain_.prefix.back();
-            if (whole < 0) return {};
-            return {{reduction_.row_step[static_cast<std::size_t>(whole)], reduction_.gap_sign * weight()}};
+            return {{reduction_.row_step[variables() - 1], reduction_.gap_sign * weight()}};
         }
-        const Eigen::VectorXi w = reduction_.gap_sign * contact_row(kernel_);
-        return forcing_rows({w.begin(), w.end()});
+        return forcing_row(reduction_.gap_sign * reduction_.flip * contact_row(kernel_)[0]);
     }
 
     // Forms proved <= 0 that leave only rest: first one over every column of COND3.
     [[nodiscard]] std::vector<FormBound> only_rest() const {
         if (variables() == 0) {
-            const Conditions terms = conditions(kernel_, 0);
-            Dense sum(static_cast<std::size_t>(kernel_.dimension()));
-            for (const auto& zero : reduction_.forced) {
-                const auto c = static_cast<std::size_t>(zero.column);
-                sum[c] = terms.bound_of[c] == Conditions::Sign::nonpositive ? -1 : 1;
-            }
-            return {{sparse(sum), {forcing_rows(sum), 0}}};
+            const bool forced = !reduction_.forced.empty();
+            const Dense sum(static_cast<std::size_t>(kernel_.dimension()), forced ? reduction_.flip : 0);
+            return {{sparse(sum), {forcing_row(1), 0}}};
         }
         if (set_.shape == Shape::simplex) return {bound(Dense(variables(), 1))};
         std::vector<FormBound> forms{bound(Dense(variables()))};  // COND3 has none
@@ -196,7 +161,8 @@ private:
     }
 
     [[nodiscard]] GreatestProof greatest_proof() const {
-        GreatestProof proof{reduction_.column, {}};
+        GreatestProof proof{std::vector<int>(variables()), {}};
+        std::iota(proof.chain.begin(), proof.chain.end(), 0);
         Dense sum(variables());
         for (std::size_t k = 0; k + 1 < variables(); ++k) {
             sum[k] = reduction_.gap_sign * weight();
@@ -211,7 +177,6 @@ private:
     const Kernel& kernel_;
     const AdmissibleSet& set_;
     const Reduction& reduction_;
-    ChainRows chain_;  // of a chain
     Proof proof_;
 };
 

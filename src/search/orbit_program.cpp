@@ -9,41 +9,16 @@ namespace {
 
 using Triplet = Eigen::Triplet<double>;
 
-// Column of beta -> reduced variable, -1 where presolve fixed it to zero.
-std::vector<int> reduced_index(const Reduction& reduction) {
-    std::vector<int> index(static_cast<std::size_t>(reduction.kernel_dimension), -1);
-    for (int j = 0; j < reduction.variables(); ++j) {
-        index[static_cast<std::size_t>(reduction.column[static_cast<std::size_t>(j)])] = j;
-    }
-    return index;
-}
-
+// b_n as factor * gamma_variable; no variable where it is zero.
 struct Term {
     int variable = -1;
     double factor = 0;
 };
 
-// b_n as factor * gamma_variable, steps taken cyclically.
-class Waves {
-public:
-    Waves(const Reduction& reduction, const Kernel& kernel)
-        : reduction_(reduction), kernel_(kernel), index_(reduced_index(reduction)) {}
-
-    [[nodiscard]] Term operator()(int n) const {
-        n %= kernel_.pattern.period_steps();
-        const int column = kernel_.column(n);
-        if (column < 0) return {};
-        const int j = index_[static_cast<std::size_t>(column)];
-        if (j < 0) return {};
-        return {j, static_cast<double>(reduction_.flip[static_cast<std::size_t>(j)] *
-                                       kernel_.sign[static_cast<std::size_t>(n)])};
-    }
-
-private:
-    const Reduction& reduction_;
-    const Kernel& kernel_;
-    std::vector<int> index_;
-};
+Term wave_term(const Reduction& reduction, const Kernel& kernel, int n) {
+    n %= kernel.pattern.period_steps();
+    return {kernel.column(n), static_cast<double>(reduction.flip * kernel.sign[static_cast<std::size_t>(n)])};
+}
 
 // Adds factor * (a - b)^2 to the Hessian of the objective x' H x / 2.
 void add_square(std::vector<Triplet>& hessian, double factor, const Term& a, const Term& b) {
@@ -57,23 +32,23 @@ void add_square(std::vector<Triplet>& hessian, double factor, const Term& a, con
     add(b, a, -1);
 }
 
-SparseRows scaled_rows(const Eigen::MatrixXi& rows, Eigen::Index variables, const std::vector<int>& capped) {
+// The kept rows of COND1, each of norm one, and with a peak force gamma_j <= peak for each pushing class.
+SparseRows inequality_rows(const Reduction& reduction, bool peak) {
     std::vector<Triplet> entries;
+    const Eigen::MatrixXi& rows = reduction.rows;
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
         const double norm = rows.row(i).cast<double>().norm();
         for (Eigen::Index j = 0; j < rows.cols(); ++j) {
-            if (rows(i, j) != 0) {
-                entries.emplace_back(static_cast<int>(i), static_cast<int>(j), rows(i, j) / norm);
-            }
+            if (rows(i, j) != 0) entries.emplace_back(static_cast<int>(i), static_cast<int>(j), rows(i, j) / norm);
         }
     }
-    auto row = static_cast<int>(rows.rows());
-    for (const int j : capped) {  // (gamma_j - peak)/sqrt(2) <= 0
-        entries.emplace_back(row, j, M_SQRT1_2);
-        entries.emplace_back(row, static_cast<int>(variables) - 1, -M_SQRT1_2);
-        ++row;
+    const int n = reduction.variables();
+    auto count = static_cast<int>(rows.rows());
+    for (int j = 0; peak && reduction.bounded && j < n; ++j, ++count) {
+        entries.emplace_back(count, j, M_SQRT1_2);
+        entries.emplace_back(count, n, -M_SQRT1_2);
     }
-    SparseRows result(row, variables);
+    SparseRows result(count, n + (peak ? 1 : 0));
     result.setFromTriplets(entries.begin(), entries.end());
     return result;
 }
@@ -84,14 +59,9 @@ void set_constraints(OrbitProgram& result, const Reduction& reduction, bool peak
     const Eigen::Index variables = n + (peak ? 1 : 0);
     result.orbit_variables = static_cast<int>(n);
     program.lower = Eigen::VectorXd::Zero(variables);
+    if (!reduction.bounded) program.lower.head(n).setConstant(-no_bound);
     program.upper = Eigen::VectorXd::Constant(variables, no_bound);
-    std::vector<int> capped;
-    for (int j = 0; j < reduction.variables(); ++j) {
-        const bool bounded = reduction.bounded[static_cast<std::size_t>(j)] != 0;
-        if (!bounded) program.lower[j] = -no_bound;
-        if (bounded && peak) capped.push_back(j);
-    }
-    program.inequalities = scaled_rows(reduction.rows, variables, capped);
+    program.inequalities = inequality_rows(reduction, peak);
     program.inequality_values = Eigen::VectorXd::Zero(program.inequalities.rows());
 
     const Eigen::VectorXd contact = reduction.contact_row.cast<double>();
@@ -99,9 +69,7 @@ void set_constraints(OrbitProgram& result, const Reduction& reduction, bool peak
     program.equalities.resize(norm > 0 ? 1 : 0, variables);
     program.equality_values = Eigen::VectorXd::Zero(program.equalities.rows());
     if (norm > 0) {
-        for (Eigen::Index j = 0; j < n; ++j) {
-            if (contact[j] != 0) program.equalities.insert(0, j) = contact[j] / norm;
-        }
+        for (Eigen::Index j = 0; j < n; ++j) program.equalities.insert(0, j) = contact[j] / norm;
         program.equality_values[0] = reduction.gap_sign / (norm * result.scale);
     }
     program.equalities.makeCompressed();
@@ -114,13 +82,8 @@ Eigen::VectorXd OrbitProgram::gamma(const Eigen::VectorXd& x) const { return sca
 Eigen::VectorXd OrbitProgram::point(const Eigen::VectorXd& gamma) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(program.variables());
     x.head(orbit_variables) = gamma / scale;
-    if (program.variables() > orbit_variables) {
-        double peak = 0;
-        for (Eigen::Index j = 0; j < orbit_variables; ++j) {
-            if (program.lower[j] == 0) peak = std::max(peak, x[j]);
-        }
-        x[orbit_variables] = peak;
-    }
+    const bool peak = program.variables() > orbit_variables;
+    if (peak && program.lower[0] == 0) x[orbit_variables] = std::max(x.maxCoeff(), 0.0);
     return x;
 }
 
@@ -146,7 +109,7 @@ OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Obj
     program.hessian.resize(variables, variables);
     program.sphere_variables = result.orbit_variables;
 
-    const Waves wave(reduction, kernel);
+    const auto wave = [&](int n) { return wave_term(reduction, kernel, n); };
     // In x, 2N sum b^2 over one window is `level` |x|^2; objectives are divided by `level`.
     const double unit = window * result.scale * result.scale / level;
     std::vector<Triplet> hessian;

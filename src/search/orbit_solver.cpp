@@ -176,7 +176,7 @@ private:
     [[nodiscard]] std::vector<Candidate> segment_points() const {
         const Eigen::VectorXd& middle = problem_.set.least;
         const double square = *request_.level / reduction_.energy_factor - middle.squaredNorm();
-        const Eigen::VectorXd& w = reduction_.contact_row.cast<double>();
+        const Eigen::VectorXd w = reduction_.contact_row.cast<double>();
         const Eigen::VectorXd step = std::sqrt(std::max(square, 0.0)) * Eigen::Vector2d(-w[1], w[0]).normalized();
         return {closed_form(middle + step, "closed-form"), closed_form(middle - step, "closed-form")};
     }

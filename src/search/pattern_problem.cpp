@@ -28,7 +28,7 @@ PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const Patte
         problem.verdict = Verdict::trivial;
     } else if (problem.set.status == AdmissibleSet::Status::empty) {
         problem.verdict = Verdict::inadmissible;
-    } else if (problem.set.status == AdmissibleSet::Status::nonempty) {
+    } else {
         problem.verdict = Verdict::admissible;
         problem.kind = pattern_kind(pattern);
     }

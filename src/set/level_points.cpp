@@ -52,10 +52,7 @@ std::optional<Eigen::VectorXd> LevelPoints::reach(const Eigen::VectorXd& gamma) 
 
 Eigen::VectorXd LevelPoints::admissible_near(Eigen::VectorXd gamma) const {
     const Reduction& data = set_.reduction;
-    const auto bounded = [&](Eigen::Index j) { return data.bounded[static_cast<std::size_t>(j)] != 0; };
-    for (Eigen::Index j = 0; j < gamma.size(); ++j) {
-        if (bounded(j)) gamma[j] = std::max(gamma[j], 0.0);
-    }
+    if (data.bounded) gamma = gamma.cwiseMax(0.0);
     const Eigen::VectorXd w = data.contact_row.cast<double>();
     if (w.squaredNorm() > 0) gamma += w * ((data.gap_sign - w.dot(gamma)) / w.squaredNorm());
     double blend = 0;
@@ -68,9 +65,7 @@ Eigen::VectorXd LevelPoints::admissible_near(Eigen::VectorXd gamma) const {
     const Eigen::VectorXd slacks = -(rows * centre_);
     const double rounding = row_rounding * gamma.lpNorm<1>();
     for (Eigen::Index i = 0; i < values.size(); ++i) need(values[i] - rounding, slacks[i]);
-    for (Eigen::Index j = 0; j < gamma.size(); ++j) {
-        if (bounded(j)) need(-gamma[j], centre_[j]);
-    }
+    for (Eigen::Index j = 0; data.bounded && j < gamma.size(); ++j) need(-gamma[j], centre_[j]);
     if (blend > 0) gamma += std::min(blend, 1.0) * (centre_ - gamma);
     return gamma;
 }

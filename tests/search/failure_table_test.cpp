@@ -420,7 +420,7 @@ TEST(FailureTable, Row16InconsistentBounds) {
         for (int contact = 1; contact < period; ++contact) {
             const auto conditions = nsma::conditions(nsma::exact_kernel({6, period - contact, contact}), 1);
             const auto reduction = nsma::reduce(conditions);
-            for (const int column : reduction.column) {
+            for (int column = 0; column < reduction.variables(); ++column) {
                 EXPECT_NE(conditions.bound_of[static_cast<std::size_t>(column)], nsma::Conditions::Sign::zero);
             }
             conflicts += reduction.removed.sign_conflicts;

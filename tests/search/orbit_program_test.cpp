@@ -39,7 +39,7 @@ VectorXd random_gamma(const Reduction& reduction, std::mt19937& random) {
     VectorXd gamma(reduction.variables());
     for (Eigen::Index j = 0; j < gamma.size(); ++j) {
         gamma[j] = normal(random);
-        if (reduction.bounded[static_cast<std::size_t>(j)] != 0) gamma[j] = std::abs(gamma[j]);
+        if (reduction.bounded) gamma[j] = std::abs(gamma[j]);
     }
     return gamma;
 }

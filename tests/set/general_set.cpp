@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -43,24 +44,26 @@ LinearProgram conditions_program(const Reduction& reduction, double contact) {
     return program;
 }
 
-LinearProgram cone_program(const Reduction& reduction, double level, double box) {
+using Bounds = std::vector<std::uint8_t>;  // 1: gamma_j >= 0
+
+LinearProgram cone_program(const Reduction& reduction, const Bounds& bounded, double level, double box) {
     const auto n = static_cast<Eigen::Index>(reduction.variables());
     LinearProgram program = conditions_program(reduction, level);
     program.lower = Eigen::VectorXd::Zero(n);
     program.upper = Eigen::VectorXd::Constant(n, box);
     for (Eigen::Index j = 0; j < n; ++j) {
-        if (reduction.bounded[static_cast<std::size_t>(j)] == 0) program.lower[j] = -box;
+        if (bounded[static_cast<std::size_t>(j)] == 0) program.lower[j] = -box;
     }
     return program;
 }
 
 // Moves a vertex of CLP onto its active set exactly (least change), so that only rounding is left.
-Eigen::VectorXd sharpened(const Reduction& reduction, const Eigen::VectorXd& vertex) {
+Eigen::VectorXd sharpened(const Reduction& reduction, const Bounds& bounded, const Eigen::VectorXd& vertex) {
     const double scale = std::max(vertex.cwiseAbs().maxCoeff(), 1e-300);
     const double tolerance = vertex_tolerance * scale;
     std::vector<Eigen::Index> free_columns;
     for (Eigen::Index j = 0; j < vertex.size(); ++j) {
-        const bool at_zero = reduction.bounded[static_cast<std::size_t>(j)] != 0 && std::abs(vertex[j]) <= tolerance;
+        const bool at_zero = bounded[static_cast<std::size_t>(j)] != 0 && std::abs(vertex[j]) <= tolerance;
         if (!at_zero) free_columns.push_back(j);
     }
     std::vector<Eigen::Index> active;
@@ -89,32 +92,32 @@ Eigen::VectorXd sharpened(const Reduction& reduction, const Eigen::VectorXd& ver
     Eigen::VectorXd result = Eigen::VectorXd::Zero(vertex.size());
     result(free_columns) = point;
     for (Eigen::Index j = 0; j < result.size(); ++j) {
-        if (reduction.bounded[static_cast<std::size_t>(j)] != 0) result[j] = std::max(result[j], 0.0);
+        if (bounded[static_cast<std::size_t>(j)] != 0) result[j] = std::max(result[j], 0.0);
     }
     return result;
 }
 
 // A nonzero element of {rows gamma <= 0, contact_row gamma = 0, bounds}, or an empty vector.
-Eigen::VectorXd cone_direction(const Reduction& reduction) {
+Eigen::VectorXd cone_direction(const Reduction& reduction, const Bounds& bounded) {
     const auto n = static_cast<Eigen::Index>(reduction.variables());
-    const bool free_variables = reduction.has_free_variables();
+    const bool free_variables = std::count(bounded.begin(), bounded.end(), std::uint8_t{0}) > 0;
     const bool one_sided = (reduction.contact_row.array() > 0).all() || (reduction.contact_row.array() < 0).all();
     if (!free_variables && one_sided) return {};
     Reduction homogeneous = reduction;
     homogeneous.gap_sign = 0;
-    LinearSolver solver(cone_program(homogeneous, 0.0, 1.0));
+    LinearSolver solver(cone_program(homogeneous, bounded, 0.0, 1.0));
     const auto direction = [&](const Eigen::VectorXd& cost) -> Eigen::VectorXd {
         const LinearSolution solution = solver.minimise(cost);
         if (solution.status != LinearStatus::optimal || solution.value > -direction_tolerance) return {};
-        return sharpened(homogeneous, solution.x);
+        return sharpened(homogeneous, bounded, solution.x);
     };
     Eigen::VectorXd cost = Eigen::VectorXd::Zero(n);
     for (Eigen::Index j = 0; j < n; ++j) {
-        if (reduction.bounded[static_cast<std::size_t>(j)] != 0) cost[j] = -1;
+        if (bounded[static_cast<std::size_t>(j)] != 0) cost[j] = -1;
     }
     Eigen::VectorXd found = direction(cost);
     for (Eigen::Index j = 0; j < n && found.size() == 0; ++j) {
-        if (reduction.bounded[static_cast<std::size_t>(j)] != 0) continue;
+        if (bounded[static_cast<std::size_t>(j)] != 0) continue;
         for (const double side : {-1.0, 1.0}) {
             if (found.size() > 0) break;
             cost = Eigen::VectorXd::Zero(n);
@@ -132,24 +135,24 @@ struct Projection {
 
 // Projection of delta * contact_row on the cone {rows gamma <= 0, gamma_bounded >= 0}: what is
 // left of it after nonnegative least squares over the cone's normals.
-Projection project_contact_row(const Reduction& reduction) {
+Projection project_contact_row(const Reduction& reduction, const Bounds& bounded) {
     const auto n = static_cast<Eigen::Index>(reduction.variables());
-    std::vector<Eigen::Index> bounded;
+    std::vector<Eigen::Index> with_sign;
     for (Eigen::Index j = 0; j < n; ++j) {
-        if (reduction.bounded[static_cast<std::size_t>(j)] != 0) bounded.push_back(j);
+        if (bounded[static_cast<std::size_t>(j)] != 0) with_sign.push_back(j);
     }
     const auto count = reduction.rows.rows();
-    Eigen::MatrixXd normals = Eigen::MatrixXd::Zero(n, count + static_cast<Eigen::Index>(bounded.size()));
+    Eigen::MatrixXd normals = Eigen::MatrixXd::Zero(n, count + static_cast<Eigen::Index>(with_sign.size()));
     normals.leftCols(count) = reduction.rows.cast<double>().transpose();
-    for (std::size_t k = 0; k < bounded.size(); ++k) {
-        normals(bounded[k], count + static_cast<Eigen::Index>(k)) = -1.0;
+    for (std::size_t k = 0; k < with_sign.size(); ++k) {
+        normals(with_sign[k], count + static_cast<Eigen::Index>(k)) = -1.0;
     }
     const Eigen::VectorXd target = reduction.gap_sign * reduction.contact_row.cast<double>();
     NonnegativeSolution solution = nonnegative_least_squares(normals, target);
     Projection projection{std::move(solution.residual), solution.converged};
     for (const int k : solution.support) {
         if (k < count) continue;
-        projection.rho[bounded[static_cast<std::size_t>(k - count)]] = 0.0;  // exactly, not to rounding
+        projection.rho[with_sign[static_cast<std::size_t>(k - count)]] = 0.0;  // exactly, not to rounding
     }
     return projection;
 }
@@ -158,14 +161,15 @@ Projection project_contact_row(const Reduction& reduction) {
 // convex function ends at a vertex no neighbour of which is better.
 class Climber {
 public:
-    Climber(const AdmissibleSet& set, LinearSolver& solver) : set_(set), solver_(solver) {}
+    Climber(const AdmissibleSet& set, const Bounds& bounded, LinearSolver& solver)
+        : set_(set), bounded_(bounded), solver_(solver) {}
 
     void climb(Eigen::VectorXd direction) {
         double best = -1;
         for (int step = 0; step < climb_limit; ++step) {
             const LinearSolution solution = solver_.minimise(-direction);
             if (solution.status != LinearStatus::optimal) return;
-            Eigen::VectorXd vertex = sharpened(set_.reduction, solution.x);
+            Eigen::VectorXd vertex = sharpened(set_.reduction, bounded_, solution.x);
             const double value = vertex.squaredNorm();
             if (value <= best * (1 + 1e-12)) break;
             best = value;
@@ -189,21 +193,22 @@ private:
     }
 
     const AdmissibleSet& set_;
+    const Bounds& bounded_;
     LinearSolver& solver_;
     std::vector<Eigen::VectorXd> found_;
 };
 
 // Extreme points (extreme directions of the box-cut cone for a closed gap) in fixed directions.
-void find_vertices(AdmissibleSet& set, LinearSolver& solver) {
+void find_vertices(AdmissibleSet& set, const Bounds& bounded, LinearSolver& solver) {
     const auto n = static_cast<Eigen::Index>(set.reduction.variables());
-    Climber climber(set, solver);
+    Climber climber(set, bounded, solver);
     if (set.least.size() > 0) climber.climb(set.least);
     const Eigen::Index stride = std::max<Eigen::Index>(1, n / full_climb_limit);
     for (Eigen::Index j = 0; j < n; j += stride) {
         Eigen::VectorXd direction = Eigen::VectorXd::Zero(n);
         direction[j] = 1;
         climber.climb(direction);
-        if (set.reduction.bounded[static_cast<std::size_t>(j)] != 0) continue;
+        if (bounded[static_cast<std::size_t>(j)] != 0) continue;
         direction[j] = -1;
         climber.climb(direction);
     }
@@ -212,8 +217,7 @@ void find_vertices(AdmissibleSet& set, LinearSolver& solver) {
         for (int shift = 0; shift < period; ++shift) {
             Eigen::VectorXd direction(n);
             for (Eigen::Index j = 0; j < n; ++j) {
-                const bool positive =
-                    set.reduction.bounded[static_cast<std::size_t>(j)] != 0 || (j + shift) / period % 2 == 0;
+                const bool positive = bounded[static_cast<std::size_t>(j)] != 0 || (j + shift) / period % 2 == 0;
                 direction[j] = positive ? 1.0 : -1.0;
             }
             climber.climb(direction);
@@ -223,13 +227,8 @@ void find_vertices(AdmissibleSet& set, LinearSolver& solver) {
     set.vertices = climber.take();
 }
 
-void fail(AdmissibleSet& set, std::string reason) {
-    set.status = AdmissibleSet::Status::failed;
-    set.reason = std::move(reason);
-}
-
-void decide_closed_gap(AdmissibleSet& set) {
-    set.ray = cone_direction(set.reduction);
+void decide_closed_gap(AdmissibleSet& set, const Bounds& bounded) {
+    set.ray = cone_direction(set.reduction, bounded);
     if (set.ray.size() == 0) {
         set.status = AdmissibleSet::Status::empty;
         set.reason = "linear program: only rest meets COND1-3 at a closed gap";
@@ -238,8 +237,8 @@ void decide_closed_gap(AdmissibleSet& set) {
     set.status = AdmissibleSet::Status::nonempty;
     set.ray.normalize();
     set.vertices = {set.ray};
-    LinearSolver solver(cone_program(set.reduction, 0.0, 1.0));
-    find_vertices(set, solver);
+    LinearSolver solver(cone_program(set.reduction, bounded, 0.0, 1.0));
+    find_vertices(set, bounded, solver);
     for (auto& vertex : set.vertices) {
         if (vertex.norm() > 0) vertex.normalize();
     }
@@ -249,7 +248,8 @@ void decide_closed_gap(AdmissibleSet& set) {
 
 }  // namespace
 
-nsma::AdmissibleSet general_set(nsma::Reduction reduction) {
+nsma::AdmissibleSet general_set(nsma::Reduction reduction, Bounds bounded) {
+    if (bounded.empty()) bounded.assign(static_cast<std::size_t>(reduction.variables()), reduction.bounded ? 1 : 0);
     AdmissibleSet set;
     set.reduction = std::move(reduction);
     const Reduction& data = set.reduction;
@@ -258,25 +258,20 @@ nsma::AdmissibleSet general_set(nsma::Reduction reduction) {
         set.reason = data.empty_because;
         return set;
     }
-    set.flat_dimension = data.variables() - (data.contact_row.isZero() ? 0 : 1);
     if (data.gap_sign == 0) {
-        decide_closed_gap(set);
+        decide_closed_gap(set, bounded);
         return set;
     }
 
     const Eigen::VectorXd target = data.contact_row.cast<double>();
-    const Projection projection = project_contact_row(data);
+    const Projection projection = project_contact_row(data, bounded);
     const bool projected_empty = projection.rho.norm() <= projection_tolerance * target.norm();
-    LinearSolver solver(cone_program(data, data.gap_sign, no_bound));
+    LinearSolver solver(cone_program(data, bounded, data.gap_sign, no_bound));
     const LinearSolution feasible = solver.minimise(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.variables())));
     const bool linear_empty = feasible.status == LinearStatus::infeasible;
-    if (!projection.converged) {
-        fail(set, "the least-norm projection did not converge");
-        return set;
-    }
+    if (!projection.converged) throw std::runtime_error("the least-norm projection did not converge");
     if (linear_empty != projected_empty || (!linear_empty && feasible.status != LinearStatus::optimal)) {
-        fail(set, "the linear program and the least-norm projection disagree on emptiness");
-        return set;
+        throw std::runtime_error("the linear program and the least-norm projection disagree on emptiness");
     }
     if (projected_empty) {
         set.status = AdmissibleSet::Status::empty;
@@ -287,13 +282,13 @@ nsma::AdmissibleSet general_set(nsma::Reduction reduction) {
     set.least = projection.rho / projection.rho.squaredNorm();
     // One exact scaling onto COND2, so that only rounding of a single product is left.
     set.least *= data.gap_sign / target.dot(set.least);
-    set.ray = cone_direction(data);
+    set.ray = cone_direction(data, bounded);
     if (set.unbounded()) {
         set.ray.normalize();
-        LinearSolver boxed(cone_program(data, data.gap_sign, 100.0 * set.least.norm()));
-        find_vertices(set, boxed);
+        LinearSolver boxed(cone_program(data, bounded, data.gap_sign, 100.0 * set.least.norm()));
+        find_vertices(set, bounded, boxed);
     } else {
-        find_vertices(set, solver);
+        find_vertices(set, bounded, solver);
     }
     return set;
 }

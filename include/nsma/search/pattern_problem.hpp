@@ -14,10 +14,10 @@ namespace nsma {
 struct PatternProblem {
     Kernel kernel;
     AdmissibleSet set;
-    Proof proof;                        ///< empty when proofs were not asked for
-    Verdict verdict = Verdict::failed;  ///< trivial, inadmissible, admissible or failed
-    std::optional<PatternKind> kind;    ///< of an admissible pattern
-    EnergyInterval interval;            ///< exact where proved
+    Proof proof;                         ///< empty when proofs were not asked for
+    Verdict verdict = Verdict::trivial;  ///< trivial, inadmissible or admissible
+    std::optional<PatternKind> kind;     ///< of an admissible pattern
+    EnergyInterval interval;             ///< exact where proved
 };
 
 struct PatternOptions {

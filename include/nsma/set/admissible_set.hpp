@@ -13,24 +13,23 @@ namespace nsma {
 /// The admissible set P = {COND1, COND2, COND3} of a pattern: a convex polytope (a cone for a
 /// closed gap) over the reduced variables gamma, and its attainable energies.
 struct AdmissibleSet {
-    enum class Status { empty, nonempty, failed };
-    /// One contact phase leaves a simplex (every reduced variable has a sign and no COND1 row is left) or a chain (none
-    /// has one; partial sums between 0 and the gap). `none`: no variable is left, or COND3 alone forbids all.
+    enum class Status { empty, nonempty };
+    /// One contact phase leaves a simplex (gamma >= 0, contact_row = c (1, .., 1), no COND1 row) or a chain (no bounds,
+    /// contact_row = -c (1, .., 1), partial sums P_k between -delta/c and 0). `none`: no variable is left, or COND3
+    /// alone forbids all.
     enum class Shape { none, simplex, chain };
 
     Reduction reduction;
-    Status status = Status::failed;
+    Status status = Status::empty;
     Shape shape = Shape::none;
     std::string reason;  ///< one line: what decided
     /// Nonempty, gap != 0: the point of least energy, exact to rounding; size n.
     Eigen::VectorXd least;
-    /// Nonempty: all vertices of the greatest energy first, then of a chain some others (for a closed gap the
-    /// directions of unit norm).
+    /// Nonempty: delta e_j/c of a simplex; of a chain, whose vertices have every P_k either 0 or -delta/c, all of the
+    /// greatest energy first, then some others (for a closed gap the directions of unit norm).
     std::vector<Eigen::VectorXd> vertices;
     /// A direction along which P is unbounded (for a closed gap: an admissible one); empty size when there is none.
     Eigen::VectorXd ray;
-    /// Dimension of the smallest flat known to hold P: n minus the rank of COND2.
-    int flat_dimension = 0;
 
     [[nodiscard]] bool unbounded() const { return ray.size() > 0; }
     /// E/E_unit of a reduced point.
@@ -38,8 +37,7 @@ struct AdmissibleSet {
     [[nodiscard]] EnergyInterval interval() const;
 };
 
-/// Decides emptiness, E_min and the greatest energy in closed form. The status is `failed` for a shape that one contact
-/// phase does not leave.
+/// Decides emptiness, E_min and the greatest energy in closed form.
 [[nodiscard]] AdmissibleSet admissible_set(Reduction reduction);
 
 }  // namespace nsma

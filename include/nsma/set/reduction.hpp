@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,9 +17,9 @@ struct RemovalCounts {
     int contact_duplicates = 0;  ///< COND2 rows equal to the one kept (p + 1, with row 0)
     int force_rows = 0;          ///< COND3 rows turned into bounds
     int silent_rows = 0;         ///< COND1 rows equal to the row before (nothing arrived)
-    int implied_rows = 0;        ///< COND1 rows that a neighbour or the bounds imply
+    int implied_rows = 0;        ///< COND1 rows that the bounds or COND2 imply
     int duplicate_rows = 0;      ///< COND1 rows equal to an earlier kept row
-    int dominated_rows = 0;      ///< COND1 rows implied by one other kept row and the bounds
+    int dominated_rows = 0;      ///< COND1 rows implied by one other kept row: none with one contact phase
 };
 
 /// A column fixed to zero because the COND1 row of this step has only nonnegative terms.
@@ -29,34 +28,36 @@ struct ForcedZero {
     int step = 0;    ///< n of the row sum_{k<n} eps_k beta <= 0
 };
 
-/// The admissible set of a pattern, reduced by arguments in integers: over
-/// gamma_j = flip_j beta_{column_j},
-///   contact_row . gamma = delta,   rows . gamma <= 0,   gamma_j >= 0 for bounded j.
+/// The admissible set of a pattern, reduced by arguments in integers: over gamma = flip beta,
+///   contact_row . gamma = delta,   rows . gamma <= 0,   gamma >= 0 where it is bounded.
 /// A COND1 row x_n <= delta minus COND2 is twice the partial sum of eps_k beta over k < n.
+/// The signs eps of every live class are the same, round by round of g steps, each a step after those of the class
+/// before (see Sieve). So COND3 says the same of every column; a COND1 row that forces one to zero forces all in turn;
+/// and one that does not holds by the bounds. Without bounds eps alternates from round to round, and the rows are the
+/// partial sums P_k = gamma_1 + .. + gamma_k of the first round, P_k <= 0 for k = 1..n, and the rest of them in the
+/// second, P_n - P_k <= 0 for k = 1..n-1.
 struct Reduction {
-    int gap_sign = 1;                   ///< delta
-    double energy_factor = 0;           ///< E/E_unit = energy_factor |gamma|^2
-    int kernel_dimension = 0;           ///< m, the size of beta
-    std::vector<int> column;            ///< reduced variable -> column of beta
-    std::vector<std::int8_t> flip;      ///< +1 or -1
-    std::vector<std::uint8_t> bounded;  ///< 1: gamma_j >= 0; 0: no contact step, free
-    Eigen::VectorXi contact_row;        ///< size n
-    Eigen::MatrixXi rows;               ///< kept COND1 rows, R x n
-    std::vector<int> row_step;          ///< n of each kept row, 1 <= n < r
+    int gap_sign = 1;             ///< delta
+    double energy_factor = 0;     ///< E/E_unit = energy_factor |gamma|^2
+    int kernel_dimension = 0;     ///< m, the size of beta
+    int flip = 1;                 ///< +1 or -1
+    bool bounded = false;         ///< gamma >= 0: every class has a contact step; else none has one
+    Eigen::VectorXi contact_row;  ///< all entries alike; size n = m, or 0 where every column is zero
+    Eigen::MatrixXi rows;         ///< kept COND1 rows, R x n
+    std::vector<int> row_step;    ///< n of each kept row, 1 <= n < r
     RemovalCounts removed;
     std::vector<ForcedZero> forced;  ///< in the order they were found
     /// Nonempty: the set is empty by an argument in integers (for a closed gap: only rest).
     std::string empty_because;
 
-    [[nodiscard]] int variables() const { return static_cast<int>(column.size()); }
-    [[nodiscard]] bool has_free_variables() const;
+    [[nodiscard]] int variables() const { return static_cast<int>(contact_row.size()); }  ///< n
     /// beta (size m) of a reduced point gamma (size n).
     [[nodiscard]] Eigen::VectorXd beta(const Eigen::VectorXd& gamma) const;
-    /// The inverse, of a beta that is zero off the kept columns.
+    /// The inverse.
     [[nodiscard]] Eigen::VectorXd gamma(const Eigen::VectorXd& beta) const;
 };
 
-/// Reduces COND1-3 of a pattern. O(n_T) per pass plus the kept rows.
+/// Reduces COND1-3 of a pattern. O(n_T) plus the kept rows.
 [[nodiscard]] Reduction reduce(const Conditions& conditions);
 
 }  // namespace nsma

@@ -181,7 +181,7 @@ void force_rows(const ProgramCase& on, Program& program) {
     std::vector<Eigen::Index> columns;
     for (int n = kernel.pattern.free_steps; n < kernel.pattern.period_steps(); ++n) {
         for (int j = 0; j < reduction.variables(); ++j) {
-            if (reduction.column[static_cast<std::size_t>(j)] == kernel.column(n)) columns.push_back(j);
+            if (j == kernel.column(n)) columns.push_back(j);
         }
     }
     const auto count = static_cast<Eigen::Index>(columns.size());
@@ -200,8 +200,7 @@ void flight_rows(const ProgramCase& on, Program& program) {
     Eigen::VectorXd values(count);
     for (int n = 0; n < count; ++n) {
         for (int j = 0; j < reduction.variables(); ++j) {
-            const auto k = static_cast<std::size_t>(j);
-            rows(n, j) = reduction.flip[k] * tips(n + 1, reduction.column[k]);
+            rows(n, j) = reduction.flip * tips(n + 1, j);
         }
         const double norm = std::max(rows.row(n).norm(), 1.0);
         rows.row(n) /= norm;
