@@ -248,11 +248,7 @@ IpoptSolver::IpoptSolver(IpoptSolver&&) noexcept = default;
 IpoptSolver& IpoptSolver::operator=(IpoptSolver&&) noexcept = default;
 
 SolverOutcome IpoptSolver::solve(const Program& program, const Eigen::VectorXd& start) {
-    validate(program);
-    if (start.size() != program.variables() || !start.allFinite()) {
-        throw std::invalid_argument("start: expected " + std::to_string(program.variables()) + " finite values, got " +
-                                    std::to_string(start.size()));
-    }
+    validate(program, start);
     const auto begin = std::chrono::steady_clock::now();
     auto* adapter = new Adapter(program, start, implementation_->options.time_limit);
     const Ipopt::SmartPtr<Ipopt::TNLP> owner(adapter);

@@ -83,4 +83,11 @@ void validate(const Program& program) {
     }
 }
 
+void validate(const Program& program, const Eigen::VectorXd& start) {
+    validate(program);
+    if (start.size() == program.variables() && start.allFinite()) return;
+    throw std::invalid_argument("start: expected " + std::to_string(program.variables()) + " finite values, got " +
+                                std::to_string(start.size()));
+}
+
 }  // namespace nsma

@@ -41,5 +41,7 @@ struct Program {
 /// Throws std::invalid_argument (name, expected, got) on sizes that do not fit, NaN, or a lower
 /// bound above its upper bound.
 void validate(const Program& program);
+/// ... and on a start that is not of its size or not finite.
+void validate(const Program& program, const Eigen::VectorXd& start);
 
 }  // namespace nsma
