@@ -56,7 +56,7 @@ struct MarchMethod {
     std::string name;
     std::string setting;
     bool decides_contact;
-    std::function<Marched(const Reference&, int periods)> march;
+    std::function<Marched()> march;
 };
 
 Marched march_queue(const Reference& reference, int periods) {
@@ -167,11 +167,12 @@ Marched march_elements(const Reference& reference, const FiniteElementOptions& o
     return marched;
 }
 
+// The methods whose march of `reference` over so many periods ends soon enough; it must outlive them.
 std::vector<MarchMethod> march_methods(const Reference& reference, int periods) {
-    std::vector<MarchMethod> methods{{"wave queue", "", true, march_queue}};
+    std::vector<MarchMethod> methods{
+        {"wave queue", "", true, [=, &reference] { return march_queue(reference, periods); }}};
     const auto add_told = [&](const char* name, Advance advance) {
-        methods.push_back(
-            {name, "", false, [advance](const Reference& of, int count) { return march_told(of, advance, count); }});
+        methods.push_back({name, "", false, [=, &reference] { return march_told(reference, advance, periods); }});
     };
     const int cells = reference.pattern().cells;
     const double steps = 1.0 * periods * reference.pattern().period_steps();
@@ -179,20 +180,19 @@ std::vector<MarchMethod> march_methods(const Reference& reference, int periods) 
     if (cells <= dense_limit && steps <= repeated_step_limit) add_told("dense A^n, repeated", by_repeated_products);
     if (cells <= dense_limit) add_told("dense A^n, squared", by_squared_products);
 
-    const auto add_elements = [&](const FiniteElementOptions& options) {
-        const bool penalty = options.scheme == FiniteElementScheme::central_penalty;
-        methods.push_back({penalty ? "FE central, penalty" : "FE Moreau-Jean",
-                           fmt::format("c dt/h {}, {} {}", options.courant, penalty ? "stiffness" : "e",
-                                       penalty ? options.penalty : options.restitution),
-                           true,
-                           [options](const Reference& of, int count) { return march_elements(of, options, count); }});
+    const auto add_elements = [&](const std::string& name, const std::string& setting,
+                                  const FiniteElementOptions& options) {
+        methods.push_back(
+            {name, setting, true, [=, &reference] { return march_elements(reference, options, periods); }});
     };
     // Stable below c dt/h = 0.91 at stiffness 1 and 0.42 at 10 (the tip against the wall).
     for (const auto& [courant, penalty] : {std::pair{0.9, 1.0}, {0.1, 1.0}, {0.25, 10.0}}) {
-        add_elements({FiniteElementScheme::central_penalty, cells, courant, penalty});
+        add_elements("FE central, penalty", fmt::format("c dt/h {}, stiffness {}", courant, penalty),
+                     {FiniteElementScheme::central_penalty, cells, courant, penalty});
     }
     for (const auto& [courant, restitution] : {std::pair{1.0, 0.0}, {0.25, 0.0}, {0.25, 1.0}}) {
-        add_elements({FiniteElementScheme::moreau_jean, cells, courant, 1.0, restitution});
+        add_elements("FE Moreau-Jean", fmt::format("c dt/h {}, e {}", courant, restitution),
+                     {FiniteElementScheme::moreau_jean, cells, courant, 1.0, restitution});
     }
     return methods;
 }
@@ -207,7 +207,7 @@ void study_marching(AccuracyRun& run) {
             if (!run.go_on()) return;
             Marched marched;
             const Spread seconds = repeated(run.sizes.repeats, [&] {
-                marched = method.march(reference, 1);
+                marched = method.march();
                 return marched.seconds;
             });
             run.add(MarchRecord{cells, method.name, method.setting, method.decides_contact, marched.steps, seconds,
@@ -218,7 +218,7 @@ void study_marching(AccuracyRun& run) {
     for (const int periods : run.sizes.periods) {
         for (const MarchMethod& method : march_methods(reference, periods)) {
             if (!run.go_on()) return;
-            const Marched marched = method.march(reference, periods);
+            const Marched marched = method.march();
             run.add(DriftRecord{run.sizes.drift_cells, method.name, method.setting, periods, marched.energy_drift,
                                 marched.periodicity_defect, marched.seconds});
         }
