@@ -11,7 +11,7 @@
 
 #include "study/sweep/sweep_queue.hpp"
 #include "study/sweep/work_messages.hpp"
-#include "report/charts.hpp"
+#include "report/sweep/sweep_charts.hpp"
 #include "report/sweep/sweep_export.hpp"
 #include "report/sweep/tables.hpp"
 
@@ -19,7 +19,7 @@ namespace nsma::app {
 namespace {
 
 void draw(const std::string& folder, bool list = true) {
-    const DrawnCharts charts = draw_charts(folder);
+    const DrawnCharts charts = draw_sweep(folder);
     for (const auto& picture : charts.pictures) {
         if (list) fmt::print("chart    {}\n", picture.string());
     }

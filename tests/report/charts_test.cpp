@@ -1,4 +1,4 @@
-#include "report/charts.hpp"
+#include "report/sweep/sweep_charts.hpp"
 
 #include <cstdlib>
 
@@ -6,7 +6,6 @@
 
 #include "sample.hpp"
 #include "nsma/report/scene_file.hpp"
-#include "report/gnuplot.hpp"
 
 namespace nsma {
 namespace {
@@ -26,7 +25,7 @@ protected:
 
 TEST_F(ChartsTest, EveryChartHasDataScriptAndPictures) {
     sweep();
-    const DrawnCharts drawn = draw_charts(path);
+    const DrawnCharts drawn = draw_sweep(path);
     EXPECT_EQ(drawn.pictures.size(), 6U);
     EXPECT_TRUE(drawn.skipped.empty());
     for (const char* name : {"frequency-energy", "orbits", "space-time"}) {
@@ -104,7 +103,7 @@ TEST_F(ChartsTest, WithoutOrbitsOnlyTheDiagramIsDrawn) {
     record.pattern = {20, 3, 4};
     record.verdict = Verdict::inadmissible;
     sample::store(path, scene, {{0, -1, record, std::nullopt}});
-    const DrawnCharts drawn = draw_charts(path);
+    const DrawnCharts drawn = draw_sweep(path);
     EXPECT_EQ(drawn.pictures.size(), 2U);
     EXPECT_EQ(drawn.skipped.size(), 2U);
 }
@@ -113,7 +112,7 @@ TEST_F(ChartsTest, TitlesCannotBreakTheScript) {
     std::string text = sample::scene_text;
     text.replace(text.find("A sample"), 8, "It's 50% {x}_y $z `ls` \\\\ plot # µ");
     sweep(text);
-    EXPECT_EQ(error_of([this] { (void)draw_charts(path); }), "no error");
+    EXPECT_EQ(error_of([this] { (void)draw_sweep(path); }), "no error");
     EXPECT_THAT(chart("frequency-energy.svg"), HasSubstr("It's 50% {x}_y $z `ls`"));
 }
 

@@ -1,53 +1,30 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "accuracy_folder.hpp"
 #include "stability_charts.hpp"
-#include "report/chart_blocks.hpp"
-#include "report/gnuplot.hpp"
 
 namespace nsma {
 namespace {
 
-constexpr double smallest = 1e-17;  // what an error of zero is drawn at
-constexpr double smallest_contact_error = 1e-4;
+constexpr double smallest_contact_error = 1e-4;  // what an error of zero is drawn at
 
-template <typename Record, typename Name>
-std::vector<std::string> names(const std::vector<Record>& records, Name name_of) {
-    std::vector<std::string> seen;
-    for (const auto& record : records) {
-        const std::string name = name_of(record);
-        if (std::find(seen.begin(), seen.end(), name) == seen.end()) seen.push_back(name);
-    }
-    return seen;
+double drawn(double error) { return std::max(error, 1e-17); }
+
+std::string log_axes(const char* title_offset) {
+    return fmt::format(
+        "set logscale xy\nset format x '10^{{%L}}'\nset format y '10^{{%L}}'\n"
+        "set grid xtics ytics lc rgb '#e4e4e4' lt 1\nset title offset {}\nset ylabel offset 1,0\n",
+        title_offset);
 }
 
-std::string frame(double left, double right, double bottom, double top) {
-    return fmt::format("set lmargin screen {}\nset rmargin screen {}\nset bmargin screen {}\nset tmargin screen {}\n",
-                       left, right, bottom, top);
-}
-
-constexpr const char* log_axes =
-    "set logscale xy\nset format x '10^{%L}'\nset format y '10^{%L}'\nset xtics out nomirror\nset ytics out nomirror\n"
-    "set border 3 lc rgb '#333333'\nset grid xtics ytics lc rgb '#e4e4e4' lt 1\nunset key\n";
-
-// A panel that shows nothing but the legend of the marks drawn elsewhere.
-std::string legend(const std::vector<std::pair<std::string, std::string>>& entries, double bottom, double top,
-                   int rows) {
-    std::string text =
-        frame(0.02, 0.98, bottom, top) +
-        "unset title\nunset xlabel\nunset ylabel\nunset border\nunset xtics\nunset ytics\nunset grid\n"
-        "unset logscale\nset xrange [0:1]\nset yrange [0:1]\n" +
-        fmt::format("set key center center vertical maxrows {} Left reverse samplen 2.5 width -2 font ',11'\nplot ",
-                    rows);
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        text += fmt::format("{}NaN with {} title {}", i == 0 ? "" : ", ", entries[i].second,
-                            gnuplot_text(entries[i].first));
-    }
-    return text + "\n";
+// The legend below all panels, with this many entries in a column.
+Panel legend_below(double top, int rows, std::vector<Curve> entries) {
+    return legend({0.02, 0.98, 0.0, top},
+                  fmt::format("center center vertical maxrows {} samplen 2.5 width -2 font ',11'", rows),
+                  std::move(entries));
 }
 
 std::string program_label(const ProgramRecord& record) { return record.method + (record.warm ? ", warm start" : ""); }
@@ -91,167 +68,162 @@ std::string stairs(const std::vector<const ProgramRecord*>& front, double right)
     return rows.empty() ? rows : rows + fmt::format("{} {}\n", right, least);
 }
 
+/// Records under one label of the key, as rows of the data.
+struct Series {
+    std::string label;
+    std::string rows;
+};
+
+template <typename Record, typename Label, typename Row>
+std::vector<Series> series_of(const std::vector<Record>& records, Label label_of, Row row) {
+    std::vector<Series> all;
+    for (const auto& label : distinct(records, label_of)) {
+        all.push_back({label, ""});
+        for (const auto& record : records) {
+            if (label_of(record) == label) all.back().rows += row(record);
+        }
+    }
+    return all;
+}
+
 constexpr const char* any_front = "lines lw 2 dt 3 lc rgb '#888888'";
 constexpr const char* certified_front = "lines lw 2.5 dt 1 lc rgb '#bbbbbb'";
 
-Chart program_chart(const AccuracyResults& results) {
-    Chart chart{"accuracy-programs", "", log_axes, 1060};
-    const auto labels = names(results.programs, program_label);
-    std::vector<int> sizes;
+std::vector<Curve> program_curves(Chart& chart, const std::vector<ProgramRecord>& records, int size, double right) {
+    const auto front = [&](const char* name, bool certified) {
+        return chart.add(fmt::format("{}-{}", name, size), stairs(pareto_front(records, size, certified), right)) +
+               " using 1:2";
+    };
+    std::vector<Curve> curves{{front("certified-front", true), certified_front}, {front("front", false), any_front}};
+    for (const bool certified : {false, true}) {
+        auto all = series_of(records, program_label, [&](const ProgramRecord& record) {
+            if (record.size != size || all_certified(record) != certified) return std::string();
+            return fmt::format("{} {} {} {}\n", record.seconds.median, drawn_error(record), record.seconds.low,
+                               record.seconds.high);
+        });
+        std::reverse(all.begin(), all.end());  // the first ones on top
+        for (const auto& [label, rows] : all) {
+            if (rows.empty()) continue;
+            const std::string block =
+                chart.add(fmt::format("{} {} {}", certified ? "certified" : "any", size, label), rows);
+            curves.push_back({block + " using 1:2:3:4", "xerrorbars pt 0 lw 1 lc rgb '#999999'"});
+            curves.push_back({block + " using 1:2", program_style(label, certified)});
+        }
+    }
+    return curves;
+}
+
+Chart program_chart(const std::vector<ProgramRecord>& records) {
+    Chart chart{.name = "accuracy-programs",
+                .settings = log_axes("0,-0.7") + "set xlabel offset 0,0.5\n",
+                .title = "One orbit at a given energy: CPU time against error, by number m of amplitudes",
+                .height = 1060};
+    const auto sizes = distinct(records, [](const ProgramRecord& record) { return record.size; });
+    std::vector<Curve> entries;
     double slowest = 1e-4;
     double fastest = 1e4;
-    for (const auto& record : results.programs) {
-        if (std::find(sizes.begin(), sizes.end(), record.size) == sizes.end()) sizes.push_back(record.size);
+    for (const auto& record : records) {
         slowest = std::max(slowest, record.seconds.high);
         fastest = std::min(fastest, std::max(record.seconds.low, 1e-7));
     }
-    chart.commands += fmt::format(
-        "set multiplot title 'One orbit at a given energy: CPU time against error, by number m of amplitudes' font "
-        "',15'\n"
-        "set xrange [{}:{}]\nset yrange [2e-16:30]\n",
-        fastest / 2, slowest * 2);
     for (std::size_t k = 0; k < sizes.size(); ++k) {
-        const std::string suffix = fmt::format("-{}", sizes[k]);
-        add_block(chart, "certified-front" + suffix,
-                  stairs(pareto_front(results.programs, sizes[k], true), slowest * 2));
-        add_block(chart, "front" + suffix, stairs(pareto_front(results.programs, sizes[k]), slowest * 2));
         const double left = k % 2 == 0 ? 0.10 : 0.59;
         const double top = k < 2 ? 0.93 : 0.55;
-        chart.commands += frame(left, left + 0.39, top - 0.30, top);
-        chart.commands += fmt::format(
-            "set title 'm = {}' offset 0,-0.7\nset xlabel '{}' offset 0,0.5\n"
-            "set ylabel 'largest error' offset 1,0\n",
-            sizes[k], k + 2 < sizes.size() ? "" : "CPU time of a run (s)");
-        std::string plot = fmt::format(
-            "plot '{}.dat' index 'certified-front{}' using 1:2 with {}, '' index 'front{}' using 1:2 with {}",
-            chart.name, suffix, certified_front, suffix, any_front);
-        for (const bool certified : {false, true}) {
-            for (auto label = labels.rbegin(); label != labels.rend(); ++label) {  // the first ones on top
-                std::string rows;
-                for (const auto& record : results.programs) {
-                    if (record.size != sizes[k] || program_label(record) != *label ||
-                        all_certified(record) != certified)
-                        continue;
-                    rows += fmt::format("{} {} {} {}\n", record.seconds.median, drawn_error(record), record.seconds.low,
-                                        record.seconds.high);
-                }
-                if (rows.empty()) continue;
-                const std::string name = fmt::format("{} {} {}", certified ? "certified" : "any", sizes[k], *label);
-                add_block(chart, name, rows);
-                plot += fmt::format(
-                    ", \\\n    '' index '{}' using 1:2:3:4 with xerrorbars pt 0 lw 1 lc rgb '#999999', "
-                    "'' index '{}' using 1:2 with {}",
-                    name, name, program_style(*label, certified));
-            }
-        }
-        chart.commands += plot + "\n";
+        chart.panels.push_back({.frame = Frame{left, left + 0.39, top - 0.30, top},
+                                .title = fmt::format("m = {}", sizes[k]),
+                                .x = {.label = k + 2 < sizes.size() ? "" : "CPU time of a run (s)",
+                                      .range = range(fastest / 2, slowest * 2)},
+                                .y = {.label = "largest error", .range = "2e-16:30"},
+                                .curves = program_curves(chart, records, sizes[k], slowest * 2)});
     }
-    std::vector<std::pair<std::string, std::string>> entries;
-    for (const auto& label : labels) entries.emplace_back(label, program_style(label, true));
-    entries.emplace_back("hollow: not every answer certified", program_style("Ipopt", false));
-    entries.emplace_back("Pareto front, certified", certified_front);
-    entries.emplace_back("Pareto front, any", any_front);
-    chart.commands += legend(entries, 0.0, 0.16, 5) + "unset multiplot\n";
+    for (const auto& label : distinct(records, program_label)) {
+        entries.push_back({"NaN", program_style(label, true), label});
+    }
+    entries.push_back({"NaN", program_style("Ipopt", false), "hollow: not every answer certified"});
+    entries.push_back({"NaN", certified_front, "Pareto front, certified"});
+    entries.push_back({"NaN", any_front, "Pareto front, any"});
+    chart.panels.push_back(legend_below(0.16, 5, std::move(entries)));
     return chart;
 }
 
-std::string march_label(const std::string& method, const std::string& setting) {
-    return setting.empty() ? method : method + ", " + setting;
+// How a method is drawn in every panel: marker, dash and shade differ, so that grey print does.
+std::string method_style(std::size_t index) {
+    static constexpr std::array<int, 10> points{7, 5, 9, 11, 13, 6, 4, 8, 10, 12};
+    static constexpr std::array<const char*, 10> colours{"#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                         "#56b4e9", "#e69f00", "#444444", "#7a5195", "#8c564b"};
+    const std::size_t k = index % points.size();
+    return fmt::format("linespoints pt {} dt {} ps 1.1*mark lw 1.6 lc rgb '{}'", points.at(k), 1 + index % 5,
+                       colours.at(k));
 }
 
-std::string line_style(std::size_t index) {
-    const MethodStyle style = method_style(index);
-    return fmt::format("linespoints pt {} dt {} ps 1.1*mark lw 1.6 lc rgb '{}'", style.point, style.dash, style.colour);
-}
-
-// Panels side by side that share the legend below them.
-struct Panel {
-    std::string title, x, y, columns;
-    std::string extra;
-};
-Chart panels_chart(const std::string& name, const std::string& title, const std::vector<std::string>& labels,
-                   const std::vector<std::string>& rows, const std::vector<Panel>& panels, int legend_rows) {
-    Chart chart{name, "", log_axes, 700};
-    chart.commands += fmt::format("set multiplot title {} font ',15'\n", gnuplot_text(title));
-    std::vector<std::pair<std::string, std::string>> entries;
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        add_block(chart, labels[i], rows[i]);
-        entries.emplace_back(labels[i], line_style(i));
-    }
+// Panels side by side that share the legend below them; the k-th draws column k + 2 of each method's rows.
+Chart method_chart(const char* name, const std::string& title, const std::vector<Series>& methods,
+                   std::vector<Panel> panels, int legend_rows) {
+    Chart chart{.name = name, .settings = log_axes("0,-0.6"), .title = title, .height = 700};
     const double pitch = 1.0 / static_cast<double>(panels.size());
     for (std::size_t k = 0; k < panels.size(); ++k) {
-        const double left = pitch * static_cast<double>(k) + 0.095;
-        chart.commands +=
-            frame(left, pitch * static_cast<double>(k + 1) - 0.02, 0.38, 0.88) +
-            fmt::format("set title '{}' offset 0,-0.6\nset xlabel '{}'\nset ylabel '{}' offset 1,0\n{}plot ",
-                        panels[k].title, panels[k].x, panels[k].y, panels[k].extra);
-        for (std::size_t i = 0; i < labels.size(); ++i) {
-            chart.commands += fmt::format("{}'{}.dat' index '{}' using {} with {}", i == 0 ? "" : ", \\\n    ", name,
-                                          labels[i], panels[k].columns, line_style(i));
-        }
-        chart.commands += "\nset autoscale\nset ytics autofreq\n";
+        const auto place = static_cast<double>(k);
+        panels[k].frame = Frame{pitch * place + 0.095, pitch * (place + 1) - 0.02, 0.38, 0.88};
     }
-    chart.commands += legend(entries, 0.0, 0.27, legend_rows) + "unset multiplot\n";
+    std::vector<Curve> entries;
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        const std::string block = chart.add(methods[i].label, methods[i].rows);
+        for (std::size_t k = 0; k < panels.size(); ++k) {
+            panels[k].curves.push_back({fmt::format("{} using 1:{}", block, k + 2), method_style(i)});
+        }
+        entries.push_back({"NaN", method_style(i), methods[i].label});
+    }
+    chart.panels = std::move(panels);
+    chart.panels.push_back(legend_below(0.27, legend_rows, std::move(entries)));
     return chart;
 }
 
-double drawn(double error) { return std::max(error, smallest); }
-
-Chart drift_chart(const AccuracyResults& results) {
-    const auto label = [](const DriftRecord& record) { return march_label(record.method, record.setting); };
-    const auto labels = names(results.drifts, label);
-    std::vector<std::string> rows(labels.size());
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        for (const auto& record : results.drifts) {
-            if (label(record) != labels[i]) continue;
-            rows[i] +=
-                fmt::format("{} {} {}\n", record.periods, drawn(record.energy_drift), drawn(record.periodicity_defect));
-        }
-    }
-    const std::string range = "set yrange [3e-18:30]\nset ytics add ('0' 1e-17)\n";
-    return panels_chart("energy-drift",
-                        fmt::format("Drift of the first nonsmooth mode, N = {} (what leaves the frame is unstable)",
-                                    results.drifts.empty() ? 0 : results.drifts.front().cells),
-                        labels, rows,
-                        {{"energy", "periods marched", "|E - E_0|/E_0", "1:2", range},
-                         {"state", "periods marched", "periodicity defect (energy norm)", "1:3", range}},
-                        5);
+template <typename Record>
+std::string march_label(const Record& record) {
+    return record.setting.empty() ? record.method : record.method + ", " + record.setting;
 }
 
-Chart march_chart(const AccuracyResults& results) {
-    const auto label = [](const MarchRecord& record) { return march_label(record.method, record.setting); };
-    const auto labels = names(results.marches, label);
-    std::vector<std::string> rows(labels.size());
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        for (const auto& record : results.marches) {
-            if (label(record) != labels[i]) continue;
-            rows[i] += fmt::format("{} {} {} {}\n", record.cells, drawn(record.tip_error),
-                                   std::max(record.contact_error, smallest_contact_error), record.seconds.median);
-        }
-    }
-    const std::string range = "set xrange [3:500]\nset yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n";
-    return panels_chart("error-and-cost", "One period of the first nonsmooth mode", labels, rows,
-                        {{"tip displacement", "cells or elements N", "largest error / |d|", "1:2", range},
-                         {"duration of contact", "cells or elements N", "relative error", "1:3",
-                          "set xrange [3:500]\nset yrange [5e-5:5]\nset ytics add ('0' 1e-4)\n"},
-                         {"cost of a period", "cells or elements N", "CPU time (s)", "1:4", "set xrange [3:500]\n"}},
-                        5);
+Chart drift_chart(const std::vector<DriftRecord>& drifts) {
+    const auto methods = series_of(drifts, march_label<DriftRecord>, [](const DriftRecord& record) {
+        return fmt::format("{} {} {}\n", record.periods, drawn(record.energy_drift), drawn(record.periodicity_defect));
+    });
+    const Axis periods{.label = "periods marched"};
+    return method_chart(
+        "energy-drift",
+        fmt::format("Drift of the first nonsmooth mode, N = {} (what leaves the frame is unstable)",
+                    drifts.front().cells),
+        methods,
+        {{.title = "energy", .x = periods, .y = {"|E - E_0|/E_0", "3e-18:30", "add ('0' 1e-17)"}},
+         {.title = "state", .x = periods, .y = {"periodicity defect (energy norm)", "3e-18:30", "add ('0' 1e-17)"}}},
+        5);
 }
 
-Chart kernel_chart(const AccuracyResults& results) {
-    const auto label = [](const KernelRecord& record) { return record.method; };
-    const auto labels = names(results.kernels, label);
-    std::vector<std::string> rows(labels.size());
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        for (const auto& record : results.kernels) {
-            if (label(record) != labels[i]) continue;
-            rows[i] += fmt::format("{} {} {}\n", record.pattern.cells, drawn(record.error), record.seconds.median);
-        }
-    }
-    return panels_chart("accuracy-kernels", "Kernel of S_T: error and cost", labels, rows,
-                        {{"distance to the exact space", "cells N", "sine of the largest angle", "1:2",
-                          "set xrange [3:300]\nset yrange [3e-18:10]\nset ytics add ('0' 1e-17)\n"},
-                         {"cost", "cells N", "CPU time (s)", "1:3", "set xrange [3:300]\n"}},
+Chart march_chart(const std::vector<MarchRecord>& marches) {
+    const auto methods = series_of(marches, march_label<MarchRecord>, [](const MarchRecord& record) {
+        return fmt::format("{} {} {} {}\n", record.cells, drawn(record.tip_error),
+                           std::max(record.contact_error, smallest_contact_error), record.seconds.median);
+    });
+    const Axis cells{"cells or elements N", "3:500"};
+    return method_chart(
+        "error-and-cost", "One period of the first nonsmooth mode", methods,
+        {{.title = "tip displacement", .x = cells, .y = {"largest error / |d|", "3e-18:10", "add ('0' 1e-17)"}},
+         {.title = "duration of contact", .x = cells, .y = {"relative error", "5e-5:5", "add ('0' 1e-4)"}},
+         {.title = "cost of a period", .x = cells, .y = {.label = "CPU time (s)"}}},
+        5);
+}
+
+Chart kernel_chart(const std::vector<KernelRecord>& kernels) {
+    const auto methods = series_of(
+        kernels, [](const KernelRecord& record) { return record.method; },
+        [](const KernelRecord& record) {
+            return fmt::format("{} {} {}\n", record.pattern.cells, drawn(record.error), record.seconds.median);
+        });
+    const Axis cells{"cells N", "3:300"};
+    return method_chart("accuracy-kernels", "Kernel of S_T: error and cost", methods,
+                        {{.title = "distance to the exact space",
+                          .x = cells,
+                          .y = {"sine of the largest angle", "3e-18:10", "add ('0' 1e-17)"}},
+                         {.title = "cost", .x = cells, .y = {.label = "CPU time (s)"}}},
                         2);
 }
 
@@ -259,10 +231,10 @@ Chart kernel_chart(const AccuracyResults& results) {
 
 std::vector<Chart> accuracy_charts(const AccuracyResults& results) {
     std::vector<Chart> charts;
-    if (!results.programs.empty()) charts.push_back(program_chart(results));
-    if (!results.kernels.empty()) charts.push_back(kernel_chart(results));
-    if (!results.marches.empty()) charts.push_back(march_chart(results));
-    if (!results.drifts.empty()) charts.push_back(drift_chart(results));
+    if (!results.programs.empty()) charts.push_back(program_chart(results.programs));
+    if (!results.kernels.empty()) charts.push_back(kernel_chart(results.kernels));
+    if (!results.marches.empty()) charts.push_back(march_chart(results.marches));
+    if (!results.drifts.empty()) charts.push_back(drift_chart(results.drifts));
     for (Chart& chart : stability_charts(results)) charts.push_back(std::move(chart));
     return charts;
 }

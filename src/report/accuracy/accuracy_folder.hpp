@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "nsma/study/scene.hpp"
 #include "study/accuracy/accuracy_records.hpp"
 #include "nsma/report/input_error.hpp"
-#include "report/charts.hpp"
+#include "report/chart.hpp"
 
 namespace nsma {
 

@@ -3,222 +3,237 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
 
-#include "report/chart_blocks.hpp"
-#include "report/gnuplot.hpp"
-
 namespace nsma {
 namespace {
 
-constexpr const char* heat_head =
-    "set palette defined (0 '#f7fbff', 0.25 '#c6dbef', 0.5 '#6baed6', 0.75 '#2171b5', 1 '#08306b')\n"
-    "set cbrange [0:1]\nunset colorbox\nset border lc rgb '#666666'\nset style fill solid\n";
+/// One shaded cell with a text for each value.
+struct HeatMap {
+    std::string name;
+    std::string title;
+    std::vector<std::string> rows = {};  ///< bottom to top
+    std::vector<std::string> columns = {};
+    std::string cells = {};  ///< rows of the data
 
-// The values that a record is drawn with.
-// As wide as a cell of a map.
-std::string short_number(double value) {
-    if (value < 1000) return fmt::format("{:.3g}", value);
-    return fmt::format("{:.{}f}k", 1e-3 * value, value < 9950 ? 1 : 0);
+    void add(std::size_t column, const std::string& column_name, const std::string& row, double shade,
+             const std::string& text) {  // 0 light .. 1 dark
+        columns.resize(std::max(columns.size(), column + 1));
+        columns[column] = column_name;
+        const auto height = std::find(rows.begin(), rows.end(), row) - rows.begin();
+        cells += fmt::format("{} {} {:.4f} \"{}\" {}\n", column, height, shade, text, shade > 0.55 ? 0xffffff : 0);
+    }
+};
+
+Axis heat_axis(const std::string& label, const std::vector<std::string>& names, bool named, const char* style) {
+    std::string ticks;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        ticks += fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplot_text(named ? names[i] : ""), i);
+    }
+    return {label, range(-0.5, static_cast<double>(names.size()) - 0.5),
+            fmt::format("({}) scale 0 noenhanced {}", ticks, style)};
 }
 
-enum class Shown { failures, iterations, seconds };
+/// Which axes of a panel have ticks, and a label along x.
+struct Named {
+    bool rows = true;
+    bool columns = true;
+    const char* label = "";
+};
 
-template <typename Value>
-int place(std::vector<Value>& seen, const Value& value) {
-    const auto found = std::find(seen.begin(), seen.end(), value);
-    if (found != seen.end()) return static_cast<int>(found - seen.begin());
-    seen.push_back(value);
-    return static_cast<int>(seen.size()) - 1;
+void add_panel(Chart& chart, const Frame& frame, const HeatMap& map, const Named& named) {
+    const std::string block = chart.add(map.name, map.cells);
+    chart.panels.push_back(
+        {.frame = frame,
+         .title = map.title,
+         .x = heat_axis(named.label, map.columns, named.columns, "rotate by 40 right font ',10'"),
+         .y = heat_axis("", map.rows, named.rows, "font ',11'"),
+         .curves = {{block + " using 1:2:(0.5):(0.5):3", "boxxy fs solid border lc rgb '#999999' fc palette"},
+                    {block + " using 1:2:4:5", "labels tc rgb variable font ',9'"}}});
+}
+
+Chart heat_chart(const std::string& name, const std::string& title, int height) {
+    return {.name = name,
+            .settings =
+                "set palette defined (0 '#f7fbff', 0.25 '#c6dbef', 0.5 '#6baed6', 0.75 '#2171b5', 1 '#08306b')\n"
+                "set cbrange [0:1]\nunset colorbox\nset border 31 lc rgb '#666666'\nset style fill solid\n"
+                "set title offset 0,-0.6\n",
+            .title = title,
+            .height = height};
+}
+
+using Records = std::vector<StabilityRecord>;
+
+template <typename Keep>
+Records filtered(const Records& records, Keep keep) {
+    Records kept;
+    std::copy_if(records.begin(), records.end(), std::back_inserter(kept), keep);
+    return kept;
+}
+
+std::string method_of(const StabilityRecord& record) { return record.method; }
+std::string size_of(const StabilityRecord& record) { return fmt::format("m = {}", record.size); }
+
+// The first at the top.
+std::vector<std::string> method_rows(const Records& records) {
+    auto methods = distinct(records, method_of);
+    std::reverse(methods.begin(), methods.end());
+    return methods;
 }
 
 double failures(const StabilityRecord& record) {
     return record.runs == 0 ? 0.0 : 1.0 - static_cast<double>(record.outcomes[0]) / record.runs;
 }
 
-double shade(double value, double lo, double hi) {
-    if (!(value > 0) || !(hi > lo)) return 0.0;
-    return std::clamp(std::log(value / lo) / std::log(hi / lo), 0.0, 1.0);
+std::string success_text(const StabilityRecord& record) {
+    return fmt::format("{:.0f}{}", 100 * (1 - failures(record)), record.proved ? "" : "*");
+}
+
+// As wide as a cell of a map.
+std::string iterations_text(const StabilityRecord& record) {
+    const double value = record.iterations;
+    if (value < 1000) return fmt::format("{:.3g}", value);
+    return fmt::format("{:.{}f}k", 1e-3 * value, value < 9950 ? 1 : 0);
 }
 
 // Two digits and the SI prefix of the second: 3.1µ, 86µ, 4.2m, 590m, 1.3.
-std::string short_time(double seconds) {
-    const ScaledUnit unit = scaled_unit(std::max(seconds, 1e-6), "");
-    const double value = seconds * unit.factor;
+std::string time_text(const StabilityRecord& record) {
+    const ScaledUnit unit = scaled_unit(std::max(record.seconds, 1e-6), "");
+    const double value = record.seconds * unit.factor;
     return fmt::format("{:.{}f}{}", value, value < 0.995 ? 2 : value < 9.95 ? 1 : 0, unit.unit);
 }
 
-HeatMap::Cell cell(const StabilityRecord& record, Shown shown, int column, int row, double lo, double hi) {
-    switch (shown) {
-        case Shown::failures:
-            return {column, row, failures(record),
-                    fmt::format("{:.0f}{}", 100 * (1 - failures(record)), record.proved ? "" : "*")};
-        case Shown::iterations: {
-            const double value = std::max(record.iterations, 1.0);
-            return {column, row, shade(value, lo, hi), short_number(record.iterations)};
-        }
-        case Shown::seconds: {
-            const double value = 1e3 * record.seconds;
-            return {column, row, shade(value, lo, hi), short_time(record.seconds)};
-        }
-    }
-    return {};
-}
-
-std::vector<const StabilityRecord*> of_map(const AccuracyResults& results, const std::string& map) {
-    std::vector<const StabilityRecord*> records;
-    for (const auto& record : results.stability) {
-        if (record.map == map) records.push_back(&record);
-    }
-    return records;
-}
+/// What the maps of levels show, one chart each; `value` decides the shade.
+struct Quantity {
+    const char* chart;
+    const char* title;
+    double (*value)(const StabilityRecord& record);
+    std::string (*text)(const StabilityRecord& record);
+    bool logarithmic;  ///< shaded from the least to the greatest value; else value is the shade
+};
+constexpr std::array<Quantity, 3> quantities{
+    {{"stability-success", "Success rate (%): replayed, and within 1e-6 of the best (*: best known, not proved)",
+      failures, success_text, false},
+     {"stability-iterations", "Iterations or evaluations, median",
+      [](const StabilityRecord& record) { return std::max(record.iterations, 1.0); }, iterations_text, true},
+     {"stability-time", "CPU time of a run (s; m: 1e-3, µ: 1e-6), median",
+      [](const StabilityRecord& record) { return std::max(1e3 * record.seconds, 1e-6); }, time_text, true}}};
 
 // One panel a method: levels along x, sizes along y.
-Chart level_chart(const AccuracyResults& results, Shown shown, const char* name, const char* what) {
-    const auto records = of_map(results, "level");
-    std::vector<std::string> methods;
-    std::vector<int> sizes;
+Chart level_chart(const Records& records, const Quantity& quantity) {
     double lo = 1e300;
     double hi = 0;
-    for (const auto* record : records) {
-        place(methods, record->method);
-        place(sizes, record->size);
-        const double value = shown == Shown::seconds ? 1e3 * record->seconds : std::max(record->iterations, 1.0);
-        lo = std::min(lo, std::max(value, 1e-6));
-        hi = std::max(hi, value);
+    for (const auto& record : records) {
+        lo = std::min(lo, quantity.value(record));
+        hi = std::max(hi, quantity.value(record));
     }
-    Chart chart{name, "", heat_head, 1150};
-    chart.commands += fmt::format("set multiplot title '{}' font ',15'\n", what);
-    const int columns = 2;
-    const int rows = (static_cast<int>(methods.size()) + columns - 1) / columns;
+    const auto shade = [&](double value) {
+        if (!quantity.logarithmic) return value;
+        return hi > lo ? std::log(value / lo) / std::log(hi / lo) : 0.0;
+    };
+    Chart chart = heat_chart(quantity.chart, quantity.title, 1150);
+    const auto methods = distinct(records, method_of);
+    const int rows = (static_cast<int>(methods.size()) + 1) / 2;
     for (int k = 0; k < static_cast<int>(methods.size()); ++k) {
-        HeatMap map;
-        map.name = fmt::format("panel-{}", k);
-        map.title = methods[static_cast<std::size_t>(k)];
-        for (const int size : sizes) map.rows.push_back(k % columns == 0 ? fmt::format("m = {}", size) : "");
-        for (const auto* record : records) {
-            if (record->method != map.title) continue;
-            if (static_cast<int>(map.columns.size()) <= record->column)
-                map.columns.resize(static_cast<std::size_t>(record->column) + 1);
-            map.columns[static_cast<std::size_t>(record->column)] = record->difficulty;
-            map.cells.push_back(cell(*record, shown, record->column, place(sizes, record->size), lo, hi));
+        HeatMap map{fmt::format("panel-{}", k), methods[static_cast<std::size_t>(k)], distinct(records, size_of)};
+        for (const auto& record : records) {
+            if (record.method != map.title) continue;
+            map.add(static_cast<std::size_t>(record.column), record.difficulty, size_of(record),
+                    shade(quantity.value(record)), quantity.text(record));
         }
-        const int row = k / columns;
-        const int column = k % columns;
-        const bool last = row == rows - 1;
-        if (!last) std::fill(map.columns.begin(), map.columns.end(), "");
+        const double left = k % 2 == 0 ? 0.10 : 0.555;
         const double height = 0.82 / rows;
-        const double top = 0.92 - row * height;
-        add_heat_map(chart, map, 0.10 + 0.455 * column, 0.535 + 0.455 * column, top - height + 0.045, top);
+        const double top = 0.92 - k / 2 * height;
+        add_panel(chart, {left, left + 0.435, top - height + 0.045, top}, map,
+                  {.rows = k % 2 == 0, .columns = k / 2 == rows - 1});
     }
-    chart.commands += "unset multiplot\n";
     return chart;
 }
 
-// One panel a difficulty: its degrees along x, methods along y.
-Chart difficulty_chart(const AccuracyResults& results, const Pattern& pattern, const std::string& name) {
-    static const std::array<std::pair<const char*, const char*>, 3> maps{
-        {{"start", "distance of the start, in radii of the energy sphere"},
-         {"units", "unit of the objective and rows"},
-         {"rows", "rows put back that presolve removes"}}};
-    Chart chart{name, "", heat_head, 900};
-    chart.commands += fmt::format(
-        "set multiplot title 'Success rate (%): replayed, and within 1e-6 of the best; N = {}, r = {}, p = {}' "
-        "noenhanced font ',15'\n",
-        pattern.cells, pattern.free_steps, pattern.contact_steps);
-    const std::array<std::array<double, 4>, 3> frames{
-        {{0.15, 0.53, 0.58, 0.90}, {0.59, 0.98, 0.58, 0.90}, {0.15, 0.53, 0.14, 0.44}}};
-    for (std::size_t k = 0; k < maps.size(); ++k) {
-        HeatMap map;
-        map.name = maps[k].first;
-        map.title = maps[k].second;
-        std::vector<std::string> methods;
-        for (const auto* record : of_map(results, maps[k].first)) {
-            if (record->pattern == pattern) place(methods, record->method);
+// What went wrong, method by method.
+HeatMap causes_map(const Records& records) {
+    HeatMap map{"causes", "share of runs by outcome (%)", method_rows(records)};
+    for (const auto& method : map.rows) {
+        std::array<int, outcome_count> outcomes{};
+        int runs = 0;
+        for (const auto& record : records) {
+            if (record.method != method) continue;
+            runs += record.runs;
+            for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += record.outcomes[i];
         }
-        std::reverse(methods.begin(), methods.end());
-        for (const auto* record : of_map(results, maps[k].first)) {
-            if (record->pattern != pattern) continue;
-            const auto column = static_cast<std::size_t>(record->column);
-            if (map.columns.size() <= column) map.columns.resize(column + 1);
-            map.columns[column] = record->difficulty;
-            map.cells.push_back(cell(*record, Shown::failures, record->column, place(methods, record->method), 0, 1));
-        }
-        if (map.cells.empty()) continue;
-        map.rows = k == 1 ? std::vector<std::string>(methods.size()) : methods;
-        add_heat_map(chart, map, frames[k][0], frames[k][1], frames[k][2], frames[k][3]);
-    }
-    // What went wrong in these runs, method by method.
-    HeatMap causes;
-    causes.name = "causes";
-    causes.title = "share of runs by outcome (%)";
-    std::vector<std::string> methods;
-    std::map<std::string, std::pair<std::array<int, outcome_count>, int>> counts;
-    for (const auto& record : results.stability) {
-        if (record.map == "level" || !(record.pattern == pattern)) continue;
-        place(methods, record.method);
-        auto& [outcomes, runs] = counts[record.method];
-        runs += record.runs;
-        for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += record.outcomes[i];
-    }
-    std::reverse(methods.begin(), methods.end());
-    for (int i = 0; i < outcome_count; ++i) causes.columns.emplace_back(nsma::name(static_cast<Outcome>(i)));
-    for (const auto& method : methods) {
-        const auto& [outcomes, runs] = counts[method];
-        for (int i = 0; i < outcome_count; ++i) {
-            const double share = static_cast<double>(outcomes[static_cast<std::size_t>(i)]) / std::max(runs, 1);
-            causes.cells.push_back({i, place(methods, method), i == 0 ? 1 - share : share,
-                                    share > 0 ? fmt::format("{:.0f}", std::max(100 * share, 1.0)) : ""});
+        for (std::size_t i = 0; i < outcomes.size(); ++i) {
+            const double share = static_cast<double>(outcomes[i]) / std::max(runs, 1);
+            map.add(i, std::string(name(static_cast<Outcome>(i))), method, i == 0 ? 1 - share : share,
+                    share > 0 ? fmt::format("{:.0f}", std::max(100 * share, 1.0)) : "");
         }
     }
-    causes.rows.resize(methods.size());
-    add_heat_map(chart, causes, 0.59, 0.98, 0.14, 0.44);
-    chart.commands += "unset multiplot\n";
+    return map;
+}
+
+// One panel a difficulty: its degrees along x, methods along y. The records are of one pattern.
+Chart difficulty_chart(const Records& records, const std::string& name) {
+    struct Difficulty {
+        const char* map;
+        const char* title;
+        Frame frame;
+        bool names_methods;
+    };
+    static constexpr std::array<Difficulty, 3> difficulties{
+        {{"start", "distance of the start, in radii of the energy sphere", {0.15, 0.53, 0.58, 0.90}, true},
+         {"units", "unit of the objective and rows", {0.59, 0.98, 0.58, 0.90}, false},
+         {"rows", "rows put back that presolve removes", {0.15, 0.53, 0.14, 0.44}, true}}};
+    const Pattern& pattern = records.front().pattern;
+    Chart chart =
+        heat_chart(name,
+                   fmt::format("Success rate (%): replayed, and within 1e-6 of the best; N = {}, r = {}, p = {}",
+                               pattern.cells, pattern.free_steps, pattern.contact_steps),
+                   900);
+    for (const auto& difficulty : difficulties) {
+        const auto shown = filtered(records, [&](const auto& record) { return record.map == difficulty.map; });
+        if (shown.empty()) continue;
+        HeatMap map{difficulty.map, difficulty.title, method_rows(shown)};
+        for (const auto& record : shown) {
+            map.add(static_cast<std::size_t>(record.column), record.difficulty, record.method, failures(record),
+                    success_text(record));
+        }
+        add_panel(chart, difficulty.frame, map, {.rows = difficulty.names_methods});
+    }
+    add_panel(chart, {0.59, 0.98, 0.14, 0.44}, causes_map(records), {.rows = false});
     return chart;
 }
 
 // Dimension that each tolerance finds, less the true one.
-Chart tolerance_chart(const AccuracyResults& results) {
-    std::vector<std::pair<std::string, bool>> panels;  // method, long cycles
-    std::vector<int> cells;
-    std::vector<double> tolerances;
-    // The second pattern of each size has fewer classes.
-    std::map<std::pair<int, int>, bool> is_long;
-    std::map<int, int> first_free;
-    for (const auto& record : results.tolerances) {
-        const int free = first_free.try_emplace(record.pattern.cells, record.pattern.free_steps).first->second;
-        is_long[{record.pattern.cells, record.pattern.free_steps}] = record.pattern.free_steps != free;
-        place(cells, record.pattern.cells);
-        place(tolerances, record.tolerance);
-        place(panels, {record.method, record.pattern.free_steps != free});
-    }
-    Chart chart{"accuracy-kernel-tolerance", "", heat_head, 700};
-    chart.commands += "set multiplot title 'Dimension found by a dense method, less the true one' font ',15'\n";
-    for (std::size_t k = 0; k < panels.size(); ++k) {
-        HeatMap map;
-        map.name = fmt::format("panel-{}", k);
-        map.title = fmt::format("{}, {}", panels[k].first, panels[k].second ? "one long cycle" : "many short cycles");
-        map.x_label = k >= 2 ? "tolerance" : "";
-        for (std::size_t i = 0; i < tolerances.size(); ++i) {
-            map.columns.push_back(k >= panels.size() - 2 && i % 2 == 1 ? fmt::format("{:.0e}", tolerances[i]) : "");
-        }
-        for (const int n : cells) map.rows.push_back(k % 2 == 0 ? fmt::format("N = {}", n) : "");
-        for (const auto& record : results.tolerances) {
-            const bool long_cycle = is_long[{record.pattern.cells, record.pattern.free_steps}];
-            if (std::pair{record.method, long_cycle} != panels[k]) continue;
+Chart tolerance_chart(const std::vector<ToleranceRecord>& records) {
+    std::map<int, int> first_free;  // the second pattern of each size has fewer classes
+    for (const auto& record : records) first_free.try_emplace(record.pattern.cells, record.pattern.free_steps);
+    const auto title_of = [&](const ToleranceRecord& record) {
+        const bool first = record.pattern.free_steps == first_free.at(record.pattern.cells);
+        return fmt::format("{}, {}", record.method, first ? "many short cycles" : "one long cycle");
+    };
+    const auto size_text = [](const ToleranceRecord& record) { return fmt::format("N = {}", record.pattern.cells); };
+    const auto titles = distinct(records, title_of);
+    const auto tolerances = distinct(records, [](const auto& record) { return record.tolerance; });
+    Chart chart = heat_chart("accuracy-kernel-tolerance", "Dimension found by a dense method, less the true one", 700);
+    for (std::size_t k = 0; k < titles.size(); ++k) {
+        HeatMap map{fmt::format("panel-{}", k), titles[k], distinct(records, size_text)};
+        for (const auto& record : records) {
+            if (title_of(record) != titles[k]) continue;
+            const auto column = static_cast<std::size_t>(
+                std::find(tolerances.begin(), tolerances.end(), record.tolerance) - tolerances.begin());
             const int wrong = record.found - record.expected;
-            const double depth =
-                wrong == 0 ? 0.0 : 0.35 + 0.65 * std::min(1.0, std::log10(std::abs(wrong) + 1.0) / 2.5);
-            map.cells.push_back({place(tolerances, record.tolerance), place(cells, record.pattern.cells), depth,
-                                 wrong == 0 ? "" : fmt::format("{:+d}", wrong)});
+            const double depth = 0.35 + 0.65 * std::min(1.0, std::log10(std::abs(wrong) + 1.0) / 2.5);
+            map.add(column, column % 2 == 1 ? fmt::format("{:.0e}", record.tolerance) : "", size_text(record),
+                    wrong == 0 ? 0.0 : depth, wrong == 0 ? "" : fmt::format("{:+d}", wrong));
         }
         const double left = 0.09 + 0.46 * static_cast<double>(k % 2);
         const double top = k < 2 ? 0.86 : 0.47;
-        add_heat_map(chart, map, left, left + 0.43, top - 0.29, top);
+        add_panel(chart, {left, left + 0.43, top - 0.29, top}, map,
+                  {.rows = k % 2 == 0, .columns = k + 2 >= titles.size(), .label = k >= 2 ? "tolerance" : ""});
     }
-    chart.commands += "unset multiplot\n";
     return chart;
 }
 
@@ -226,23 +241,18 @@ Chart tolerance_chart(const AccuracyResults& results) {
 
 std::vector<Chart> stability_charts(const AccuracyResults& results) {
     std::vector<Chart> charts;
-    if (!of_map(results, "level").empty()) {
-        charts.push_back(
-            level_chart(results, Shown::failures, "stability-success",
-                        "Success rate (%): replayed, and within 1e-6 of the best (*: best known, not proved)"));
-        charts.push_back(
-            level_chart(results, Shown::iterations, "stability-iterations", "Iterations or evaluations, median"));
-        charts.push_back(
-            level_chart(results, Shown::seconds, "stability-time", "CPU time of a run (s; m: 1e-3, µ: 1e-6), median"));
+    const auto is_level = [](const StabilityRecord& record) { return record.map == "level"; };
+    const auto levels = filtered(results.stability, is_level);
+    const auto others = filtered(results.stability, std::not_fn(is_level));
+    for (const Quantity& quantity : quantities) {
+        if (!levels.empty()) charts.push_back(level_chart(levels, quantity));
     }
-    std::vector<Pattern> patterns;
-    for (const auto& record : results.stability) {
-        if (record.map != "level") place(patterns, record.pattern);
-    }
+    const auto patterns = distinct(others, [](const auto& record) { return record.pattern; });
     for (std::size_t k = 0; k < patterns.size(); ++k) {
-        charts.push_back(difficulty_chart(results, patterns[k], fmt::format("stability-difficulty-{}", k + 1)));
+        const auto of_pattern = filtered(others, [&](const auto& record) { return record.pattern == patterns[k]; });
+        charts.push_back(difficulty_chart(of_pattern, fmt::format("stability-difficulty-{}", k + 1)));
     }
-    if (!results.tolerances.empty()) charts.push_back(tolerance_chart(results));
+    if (!results.tolerances.empty()) charts.push_back(tolerance_chart(results.tolerances));
     return charts;
 }
 

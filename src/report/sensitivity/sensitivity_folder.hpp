@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "nsma/study/sensitivity/sensitivity.hpp"
-#include "report/charts.hpp"
 
 namespace nsma {
 
@@ -39,17 +38,6 @@ void write_sensitivity(const std::filesystem::path& folder, const Scene& scene, 
 /// Relative change of the value per relative change of gap or energy; of a parameter that is
 /// zero, per |d| or per Y S |d|/L.
 [[nodiscard]] double elasticity(double derivative, Parameter parameter, double value, int gap_sign, double level);
-
-/// Where in the motion the wall decides: x_1(t) above, what relaxing each row saves below.
-[[nodiscard]] Chart binding_chart(const Scene& scene, const OptimumRecord& optimum);
-/// E_min of one pattern under each relaxation and, given its optimum at the level of the curves,
-/// the objective; the tangents at zero that the multipliers predict dotted.
-[[nodiscard]] Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records,
-                                     const IntervalRecord& interval, const OptimumRecord* optimum);
-/// Number of admissible patterns under each relaxation.
-[[nodiscard]] Chart count_chart(const Scene& scene, const SensitivityRecords& records);
-/// Patterns left after each condition, in every order.
-[[nodiscard]] Chart funnel_chart(const Scene& scene, const SensitivityRecords& records);
 
 /// Draws the charts that the records can show into folder/charts; returns the SVG and PNG files.
 [[nodiscard]] std::vector<std::filesystem::path> draw_sensitivity(const std::filesystem::path& folder,

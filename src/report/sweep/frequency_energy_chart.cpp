@@ -4,28 +4,28 @@
 
 #include <fmt/format.h>
 
+#include "sweep_charts.hpp"
 #include "nsma/orbit/backbone.hpp"
-#include "report/charts.hpp"
-#include "report/gnuplot.hpp"
 
 namespace nsma {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int most_modes = 30;
 
+/// Of energies or frequencies, which are > 0; others are left out.
 struct Range {
-    double lo = infinity;
-    double hi = -infinity;
+    double lo = std::numeric_limits<double>::infinity();
+    double hi = -lo;
 
     void add(double value) {
+        if (!std::isfinite(value) || value <= 0.0) return;
         lo = std::min(lo, value);
         hi = std::max(hi, value);
     }
     [[nodiscard]] bool empty() const { return lo > hi; }
 };
 
-/// Energies (> 0) and frequencies that the axes must show.
+/// What the axes must show.
 struct Axes {
     Range energy;
     Range frequency;
@@ -35,28 +35,22 @@ struct Axes {
 /// intervals only those within a decade of the rest, lest one long interval squeeze the others.
 Axes axes_of(const StoredSweep& sweep) {
     Axes axes;
-    const auto add = [](Range& range, double value) {
-        if (std::isfinite(value) && value > 0.0) range.add(value);
-    };
+    Range ends;
     for (const PatternRecord& record : sweep.patterns) {
         if (record.verdict != Verdict::admissible) continue;
         axes.frequency.add(record.pattern.frequency_ratio());
-        if (record.interval.least) add(axes.energy, *record.interval.least);
+        axes.energy.add(record.interval.least.value_or(0.0));
+        ends.add(record.interval.greatest.value_or(0.0));
     }
     for (const StoredLevel& level : sweep.levels) {
-        if (level.verdict == Verdict::admissible && level.energy) add(axes.energy, *level.energy);
+        if (level.verdict == Verdict::admissible) axes.energy.add(level.energy.value_or(0.0));
     }
-    for (const double level : sweep.scene.levels) add(axes.energy, level);
-    Range ends;
-    for (const PatternRecord& record : sweep.patterns) {
-        if (record.verdict == Verdict::admissible && record.interval.greatest) add(ends, *record.interval.greatest);
-    }
-    if (!ends.empty()) axes.energy.add(std::min(ends.hi, 10.0 * axes.energy.hi));
-    for (const PatternRecord& record : sweep.patterns) {
-        if (axes.frequency.empty()) axes.frequency.add(record.pattern.frequency_ratio());
-    }
-    if (axes.frequency.empty()) axes.frequency.add(1.0);
+    for (const double level : sweep.scene.levels) axes.energy.add(level);
+    axes.energy.add(std::min(ends.hi, 10.0 * axes.energy.hi));
     if (axes.energy.empty()) axes.energy.add(1.0);
+    if (axes.frequency.empty()) {
+        axes.frequency.add(sweep.patterns.empty() ? 1.0 : sweep.patterns.front().pattern.frequency_ratio());
+    }
 
     axes.energy.lo /= 1.5;
     axes.energy.hi *= 1.5;
@@ -64,7 +58,7 @@ Axes axes_of(const StoredSweep& sweep) {
     // The linear frequency that a branch starts from belongs in the picture when it is near.
     for (const double nearest : {std::floor(axes.frequency.lo), std::ceil(axes.frequency.hi)}) {
         const double distance = std::max(axes.frequency.lo - nearest, nearest - axes.frequency.hi);
-        if (nearest >= 1.0 && distance < 0.35 * spread) axes.frequency.add(nearest);
+        if (distance < 0.35 * spread) axes.frequency.add(nearest);
     }
     const double margin = spread > 0.0 ? std::max(0.04, 0.06 * spread) : 0.4;
     axes.frequency.lo = std::max(0.0, axes.frequency.lo - margin);
@@ -75,144 +69,135 @@ Axes axes_of(const StoredSweep& sweep) {
 /// Energy and frequency along the exact mode k, within the axes' energies; empty out of range.
 std::vector<std::pair<double, double>> backbone(int mode, int gap_sign, const Axes& axes) {
     const PeriodInterval periods = backbone_period_interval(mode, gap_sign);
-    std::vector<std::pair<double, double>> points;
-    const auto add = [&](double energy, double period) {
-        const double frequency = 4.0 / period;
-        if (frequency >= axes.frequency.lo && frequency <= axes.frequency.hi) points.emplace_back(energy, frequency);
-    };
-    if (gap_sign == 0) {
-        add(axes.energy.lo, periods.lo);
-        add(axes.energy.hi, periods.lo);
-        return points;
-    }
-    const double least = backbone_energy_ratio(mode, gap_sign > 0 ? periods.hi : periods.lo);
+    const bool closed = gap_sign == 0;  // then one period at every energy
+    const double least = closed ? axes.energy.lo : backbone_energy_ratio(mode, gap_sign > 0 ? periods.hi : periods.lo);
     const double limit = (2.0 * mode + 1.0) / (1.0 * mode * mode);  // T/tau as E -> infinity
-    constexpr int pieces = 400;
+    const int pieces = closed ? 1 : 400;
+    std::vector<std::pair<double, double>> points;
     for (int i = 0; i <= pieces && least < axes.energy.hi; ++i) {
         const double energy = least * std::pow(axes.energy.hi / least, static_cast<double>(i) / pieces);
-        const double period = limit + gap_sign / (std::sqrt(energy) * mode * mode);
-        if (energy >= axes.energy.lo) add(energy, period);
+        const double frequency = 4.0 / (limit + gap_sign / (std::sqrt(energy) * mode * mode));
+        if (energy >= axes.energy.lo && frequency >= axes.frequency.lo && frequency <= axes.frequency.hi) {
+            points.emplace_back(energy, frequency);
+        }
     }
     return points;
 }
 
-/// A named block of the data file; gnuplot finds it by its name.
-struct Block {
-    std::string name;
-    std::string rows;
+std::string point(double energy, double frequency) { return fmt::format("{} {}\n", energy, frequency); }
+std::string segment(double energy, double frequency, double length) {
+    return fmt::format("{} {} {}\n", energy, frequency, length);
+}
 
-    void add(double x, double y) { rows += fmt::format("{} {}\n", x, y); }
-    void add(double x, double y, double z) { rows += fmt::format("{} {} {}\n", x, y, z); }
-    void gap() { rows += "\n"; }
+/// The chart, drawn from the bottom to the top.
+struct Diagram {
+    Axes axes;
+    Chart chart;
+    Panel panel;
+
+    void draw(const char* block, const std::string& rows, const char* columns, const char* style, const char* title) {
+        if (!rows.empty()) panel.curves.push_back({chart.add(block, rows) + " using " + columns, style, title});
+    }
 };
+
+bool is_contact(const Pattern& pattern) { return pattern_kind(pattern) == PatternKind::contact; }
+
+void draw_linear_modes(Diagram& diagram) {
+    const auto& [energy, frequency] = diagram.axes;
+    std::string odd, even, ticks;
+    for (int n = std::max(1, static_cast<int>(std::ceil(frequency.lo))); n <= frequency.hi; ++n) {
+        (n % 2 == 1 ? odd : even) += point(energy.lo, n) + point(energy.hi, n) + "\n";
+        ticks += fmt::format("{}'{}ω_1' {}", ticks.empty() ? "" : ", ", n == 1 ? "" : std::to_string(n), n);
+    }
+    diagram.draw("linear-free-fixed", odd, "1:2", "lines lw 1 dt 2 lc rgb '#888888'", "linear, free end");
+    diagram.draw("linear-fixed-fixed", even, "1:2", "lines lw 1 dt 3 lc rgb '#888888'", "linear, end held");
+    if (ticks.empty()) return;
+    diagram.chart.settings += fmt::format("set y2range [{}]\nset y2tics out ({})\n", diagram.panel.y.range, ticks);
+}
+
+void draw_modes(Diagram& diagram, int gap_sign) {
+    const char* place = gap_sign == 0  ? "left offset 0.8,0.8"
+                        : gap_sign > 0 ? "right offset -1.2,0.7"
+                                       : "right offset -1.0,-0.7";
+    std::string rows;
+    for (int mode = 1; mode <= most_modes; ++mode) {
+        const auto points = backbone(mode, gap_sign, diagram.axes);
+        if (points.empty()) continue;
+        for (const auto& [energy, frequency] : points) rows += point(energy, frequency);
+        rows += "\n";
+        const auto& [energy, frequency] = points[gap_sign == 0 ? 0 : points.size() / 3];
+        diagram.panel.settings += fmt::format("set label 'k = {}' at first {},{} {} textcolor rgb '#555555'\n", mode,
+                                              energy, frequency, place);
+    }
+    diagram.draw("exact-modes", rows, "1:2", "lines lw 5 lc rgb '#c8c8c8'", "exact mode k");
+}
+
+void draw_records(Diagram& diagram, const StoredSweep& sweep) {
+    const auto& [shown, frequencies] = diagram.axes;
+    const double tick = 0.02 * (frequencies.hi - frequencies.lo);
+    std::string no_contact, interval, unbounded, least_energy, single, solved, doubtful;
+    for (const PatternRecord& record : sweep.patterns) {
+        if (record.verdict != Verdict::admissible || !record.interval.least) continue;
+        const double frequency = record.pattern.frequency_ratio();
+        const double least = *record.interval.least;
+        const double greatest = record.interval.unbounded ? shown.hi : record.interval.greatest.value_or(least);
+        const double from = std::max(least, shown.lo);
+        if (!is_contact(record.pattern)) {
+            if (least > 0.0) no_contact += segment(least, frequency - 0.5 * tick, tick);
+        } else if (!record.interval.unbounded && greatest <= least * (1.0 + 1e-9)) {
+            if (least > 0.0) single += point(least, frequency);
+        } else {
+            (record.interval.unbounded ? unbounded : interval) +=
+                segment(from, frequency, std::min(greatest, shown.hi) - from);
+            if (least >= shown.lo) least_energy += point(least, frequency);
+        }
+    }
+    for (const StoredLevel& level : sweep.levels) {
+        if (level.verdict != Verdict::admissible || !level.level || !level.energy) continue;
+        const double frequency = level.pattern.frequency_ratio();
+        const bool differ =
+            level.agreement == name(Agreement::different_optimum) || level.agreement == name(Agreement::one_failed);
+        if (is_contact(level.pattern)) {
+            (differ ? doubtful : solved) += point(*level.energy, frequency);
+        } else {
+            no_contact += segment(*level.energy, frequency - 0.5 * tick, tick);
+        }
+    }
+    diagram.draw("no-contact-motion", no_contact, "1:2:(0):3", "vectors nohead lw 1 lc rgb '#999999'",
+                 "no contact motion");
+    diagram.draw("intervals", interval, "1:2:3:(0)", "vectors nohead lw 2 lc rgb '#0072b2'", "energy interval");
+    diagram.draw("unbounded", unbounded, "1:2:3:(0)", "vectors head filled size screen 0.012,18 lw 2 lc rgb '#0072b2'",
+                 "unbounded interval");
+    diagram.draw("least-energies", least_energy, "1:2", "points pt 13 ps 0.8*mark lc rgb '#0072b2'", "least energy");
+    diagram.draw("single-orbits", single, "1:2", "points pt 7 ps 0.7*mark lc rgb '#000000'", "single orbit");
+    diagram.draw("levels-solved", solved, "1:2", "points pt 6 ps 1.1*mark lw 2 lc rgb '#d55e00'", "level solved");
+    diagram.draw("levels-solvers-differ", doubtful, "1:2", "points pt 2 ps 1.1*mark lw 2 lc rgb '#d55e00'",
+                 "solvers differ");
+}
 
 }  // namespace
 
 Chart frequency_energy_chart(const StoredSweep& sweep) {
     const Axes axes = axes_of(sweep);
-    const int gap_sign = sweep.scene.bar.gap_sign();
-    Block exact{"exact-modes", ""}, linear_free{"linear-free-fixed", ""}, linear_fixed{"linear-fixed-fixed", ""};
-    Block single{"single-orbits", ""}, interval{"intervals", ""}, open{"unbounded", ""}, least{"least-energies", ""};
-    Block solved{"levels-solved", ""}, doubtful{"levels-solvers-differ", ""};
-    Block no_contact{"no-contact-motion", ""};
-    const double tick_height = 0.02 * (axes.frequency.hi - axes.frequency.lo);
-    const auto tick = [&](double energy, double frequency) {
-        no_contact.add(energy, frequency - 0.5 * tick_height, tick_height);
-    };
-    const auto is_contact = [](const Pattern& pattern) { return pattern_kind(pattern) == PatternKind::contact; };
-
-    std::string labels;
-    for (int mode = 1; mode <= most_modes; ++mode) {
-        const auto points = backbone(mode, gap_sign, axes);
-        for (const auto& [energy, frequency] : points) exact.add(energy, frequency);
-        if (points.empty()) continue;
-        exact.gap();
-        const auto& [energy, frequency] = points[gap_sign == 0 ? 0 : points.size() / 3];
-        labels += fmt::format("set label 'k = {}' at first {},{} {} textcolor rgb '#555555'\n", mode, energy, frequency,
-                              gap_sign == 0 ? "left offset 0.8,0.8"
-                                            : (gap_sign > 0 ? "right offset -1.2,0.7" : "right offset -1.0,-0.7"));
-    }
-    std::string ticks;
-    for (int n = std::max(1, static_cast<int>(std::ceil(axes.frequency.lo))); n <= axes.frequency.hi; ++n) {
-        Block& block = n % 2 == 1 ? linear_free : linear_fixed;
-        block.add(axes.energy.lo, n);
-        block.add(axes.energy.hi, n);
-        block.gap();
-        ticks += fmt::format("{}'{}ω_1' {}", ticks.empty() ? "" : ", ", n == 1 ? "" : std::to_string(n), n);
-    }
-    for (const PatternRecord& record : sweep.patterns) {
-        if (record.verdict != Verdict::admissible || !record.interval.least) continue;
-        const double frequency = record.pattern.frequency_ratio();
-        const double lo = *record.interval.least;
-        if (!is_contact(record.pattern)) {
-            if (lo > 0.0) tick(lo, frequency);
-            continue;
-        }
-        const double from = std::max(lo, axes.energy.lo);
-        if (record.interval.unbounded) {
-            open.add(from, frequency, axes.energy.hi - from);
-        } else if (record.interval.greatest && *record.interval.greatest > lo * (1.0 + 1e-9)) {
-            interval.add(from, frequency, std::min(*record.interval.greatest, axes.energy.hi) - from);
-        } else {
-            if (lo > 0.0) single.add(lo, frequency);
-            continue;
-        }
-        if (lo >= axes.energy.lo) least.add(lo, frequency);
-    }
-    for (const StoredLevel& level : sweep.levels) {
-        if (level.verdict != Verdict::admissible || !level.level || !level.energy) continue;
-        const bool differ =
-            level.agreement == name(Agreement::different_optimum) || level.agreement == name(Agreement::one_failed);
-        if (!is_contact(level.pattern)) {
-            tick(*level.energy, level.pattern.frequency_ratio());
-        } else {
-            (differ ? doubtful : solved).add(*level.energy, level.pattern.frequency_ratio());
-        }
-    }
-
-    Chart chart{"frequency-energy", "", ""};
-    chart.data = fmt::format("# {}: energy {}, frequency omega/omega_1, for intervals also their length\n",
-                             sweep.scene.title, gap_sign == 0 ? "[J]" : "E/E_g, E_g = Y S gap^2 / (2 length)");
+    const bool closed = sweep.scene.bar.gap_sign() == 0;
     const bool few_decades = axes.energy.hi < 1e5 && axes.energy.lo > 1e-4;
-    chart.commands += fmt::format(
-        "set title {} noenhanced\n"
-        "set xlabel '{}'\nset ylabel 'frequency ω/ω_1'\n"
-        "set logscale x\nset format x '{}'\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
-        "set xtics out nomirror\nset ytics out nomirror\nset mxtics 10\n"
-        "set border 11 linecolor rgb '#333333'\n"
-        "set lmargin screen 0.12\nset rmargin screen 0.93\nset tmargin screen 0.92\n"
-        "set bmargin screen 0.27\nset key at screen 0.525, screen 0.14 center top vertical "
-        "maxrows 3 "
-        "Left reverse samplen 3 width 1\n{}",
-        gnuplot_text(sweep.scene.title), gap_sign == 0 ? "energy E (J)" : "energy E/E_g,  E_g = Y S d^2 / (2L)",
-        few_decades ? "%g" : "10^{%L}", axes.energy.lo, axes.energy.hi, axes.frequency.lo, axes.frequency.hi, labels);
-    if (!ticks.empty()) {
-        chart.commands += fmt::format(
-            "set y2range [{}:{}]\nset y2tics out "
-            "({})\n",
-            axes.frequency.lo, axes.frequency.hi, ticks);
-    }
-    bool first = true;
-    const auto plot = [&](const Block& block, const char* using_columns, const char* style, const char* title) {
-        if (block.rows.empty()) return;
-        chart.data += fmt::format("\n\n# {}\n{}", block.name, block.rows);
-        chart.commands += fmt::format("{} 'frequency-energy.dat' index '{}' using {} with {} title '{}'",
-                                      first ? "plot" : ", \\\n    ", block.name, using_columns, style, title);
-        first = false;
-    };
-    plot(linear_free, "1:2", "lines lw 1 dt 2 lc rgb '#888888'", "linear, free end");
-    plot(linear_fixed, "1:2", "lines lw 1 dt 3 lc rgb '#888888'", "linear, end held");
-    plot(exact, "1:2", "lines lw 5 lc rgb '#c8c8c8'", "exact mode k");
-    plot(no_contact, "1:2:(0):3", "vectors nohead lw 1 lc rgb '#999999'", "no contact motion");
-    plot(interval, "1:2:3:(0)", "vectors nohead lw 2 lc rgb '#0072b2'", "energy interval");
-    plot(open, "1:2:3:(0)", "vectors head filled size screen 0.012,18 lw 2 lc rgb '#0072b2'", "unbounded interval");
-    plot(least, "1:2", "points pt 13 ps 0.8*mark lc rgb '#0072b2'", "least energy");
-    plot(single, "1:2", "points pt 7 ps 0.7*mark lc rgb '#000000'", "single orbit");
-    plot(solved, "1:2", "points pt 6 ps 1.1*mark lw 2 lc rgb '#d55e00'", "level solved");
-    plot(doubtful, "1:2", "points pt 2 ps 1.1*mark lw 2 lc rgb '#d55e00'", "solvers differ");
-    if (first) chart.commands += "plot NaN notitle";
-    chart.commands += "\n";
-    return chart;
+    Diagram diagram{
+        axes,
+        {.name = "frequency-energy",
+         .data = fmt::format("# {}: energy {}, frequency omega/omega_1, for intervals also their length\n",
+                             sweep.scene.title, closed ? "[J]" : "E/E_g, E_g = Y S gap^2 / (2 length)"),
+         .settings = fmt::format("set logscale x\nset format x '{}'\nset mxtics 10\nset border 11\n",
+                                 few_decades ? "%g" : "10^{%L}")},
+        {.frame = Frame{0.12, 0.93, 0.27, 0.92},
+         .title = sweep.scene.title,
+         .x = {closed ? "energy E (J)" : "energy E/E_g,  E_g = Y S d^2 / (2L)", range(axes.energy.lo, axes.energy.hi)},
+         .y = {"frequency ω/ω_1", range(axes.frequency.lo, axes.frequency.hi)},
+         .key = "at screen 0.525, screen 0.14 center top vertical maxrows 3 samplen 3 width 1"}};
+    draw_linear_modes(diagram);
+    draw_modes(diagram, sweep.scene.bar.gap_sign());
+    draw_records(diagram, sweep);
+    diagram.chart.panels = {diagram.panel};
+    return diagram.chart;
 }
 
 }  // namespace nsma

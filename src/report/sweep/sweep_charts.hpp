@@ -1,22 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "report/chart.hpp"
 #include "report/sweep/sweep_export.hpp"
 
 namespace nsma {
-
-/// One chart: the text of NAME.dat and the gnuplot commands that draw it between `set output`
-/// and its end. The commands name the data file by its bare name.
-struct Chart {
-    std::string name;
-    std::string data;
-    std::string commands;
-    int height = 625;  ///< of the SVG, for a width of 1000; the PNG is 1.6 times that
-};
 
 /// Frequency against energy: exact backbones beneath, linear frequencies dashed, single orbits
 /// as points, energy intervals as lines (an arrow when unbounded), solved levels marked.
@@ -37,16 +28,11 @@ struct OrbitChoice {
 /// are drawn where they are exactly, at several samples a cell.
 [[nodiscard]] Chart space_time_chart(const StoredSweep& sweep, const StoredOrbit& stored);
 
-/// Writes NAME.dat and NAME.gp into `folder` (made if missing) and runs gnuplot there, which
-/// leaves NAME.svg and NAME.png; `gnuplot NAME.gp` in that folder draws it again. Throws
-/// InputError (one line) when the folder cannot be written or gnuplot is missing or fails.
-void draw_chart(const Chart& chart, const std::filesystem::path& folder);
-
 /// Draws every chart of a stored sweep into folder/charts.
 struct DrawnCharts {
     std::vector<std::filesystem::path> pictures;  ///< the SVG and PNG files
     std::vector<std::string> skipped;             ///< one line a chart that had nothing to show
 };
-[[nodiscard]] DrawnCharts draw_charts(const std::filesystem::path& sweep_folder);
+[[nodiscard]] DrawnCharts draw_sweep(const std::filesystem::path& sweep_folder);
 
 }  // namespace nsma

@@ -1,0 +1,123 @@
+#include "chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "one_line.hpp"
+
+namespace nsma {
+namespace {
+
+// What all charts have in common; names of scenes may hold what gnuplot would take for mark-up.
+constexpr const char* script_head = R"(# Drawn by nsma; draw again with: gnuplot {0}.gp
+set encoding utf8
+do for [format in "svg png"] {{
+if (format eq "svg") {{
+    set terminal svg size 1000,{1} font 'sans-serif,14' linewidth 1 enhanced background rgb 'white'
+}} else {{
+    set terminal pngcairo size 1600,{2} font 'sans-serif,14' fontscale 1.5 linewidth 1.6 pointscale 1.6 enhanced
+}}
+set output '{0}.'.format
+reset
+mark = format eq "svg" ? 0.65 : 1.0
+set border 3 linecolor rgb '#333333'
+set xtics out nomirror
+set ytics out nomirror
+set title noenhanced
+)";
+
+std::string axis_commands(char name, const Axis& axis) {
+    return fmt::format("set {0}label {1}\nset {0}range [{2}]\nset {0}tics autofreq\n{3}", name,
+                       gnuplot_text(axis.label), axis.range,
+                       axis.ticks.empty() ? "" : fmt::format("set {}tics {}\n", name, axis.ticks));
+}
+
+std::string panel_commands(const Panel& panel) {
+    std::string text;
+    if (panel.frame) {
+        text +=
+            fmt::format("set lmargin screen {}\nset rmargin screen {}\nset bmargin screen {}\nset tmargin screen {}\n",
+                        panel.frame->left, panel.frame->right, panel.frame->bottom, panel.frame->top);
+    }
+    text += fmt::format("set title {}\n", gnuplot_text(panel.title)) + axis_commands('x', panel.x) +
+            axis_commands('y', panel.y) +
+            (panel.key.empty() ? "unset key\n" : fmt::format("set key Left reverse {}\n", panel.key)) +
+            "unset object\nunset label\n" + panel.settings;
+    const char* separator = "plot ";
+    for (const Curve& curve : panel.curves) {
+        text += fmt::format("{}{} with {} {}", separator, curve.source, curve.style,
+                            curve.title.empty() ? "notitle" : "title " + gnuplot_text(curve.title));
+        separator = ", \\\n     ";
+    }
+    return text + (panel.curves.empty() ? "plot NaN notitle\n" : "\n");
+}
+
+}  // namespace
+
+std::string Chart::add(const std::string& block, const std::string& rows) {
+    data += fmt::format("{}# {}\n{}", data.empty() ? "" : "\n\n", block, rows.empty() ? "NaN NaN NaN NaN\n" : rows);
+    return fmt::format("'{}.dat' index {}", name, blocks++);
+}
+
+std::string range(double lo, double hi) { return fmt::format("{}:{}", lo, hi); }
+
+Panel legend(const Frame& frame, const std::string& key, std::vector<Curve> entries) {
+    return {.frame = frame,
+            .x = {.range = "0:1"},
+            .y = {.range = "0:1"},
+            .key = key,
+            .settings = "unset border\nunset tics\nunset grid\nunset logscale\n",
+            .curves = std::move(entries)};
+}
+
+std::string marked_line(const CurveStyle& style, double size) {
+    return fmt::format("linespoints lw 2 pt {} ps {}*mark {}", style.mark, size, style.line);
+}
+
+std::string wall(double position, double label, const char* words) {
+    return fmt::format(
+        "set object rectangle from graph 0, first {} to graph 1, graph 1 behind fillcolor rgb '#dddddd' fillstyle "
+        "solid noborder\nset label '{}' at graph 0.5, first {} center textcolor rgb '#333333'\n",
+        position, words, label);
+}
+
+std::string gnuplot_text(std::string_view text) {
+    std::string quoted = "'";
+    for (const char letter : one_line(std::string(text))) {
+        quoted += letter;
+        if (letter == '\'') quoted += letter;
+    }
+    return quoted + "'";
+}
+
+ScaledUnit scaled_unit(double largest, const std::string& unit) {
+    static constexpr std::array<const char*, 9> prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
+    if (!std::isfinite(largest) || !(largest > 0.0)) return {1.0, unit};
+    const int step = std::clamp(static_cast<int>(std::floor(std::log10(largest) / 3.0 + 1e-9)), -4, 4);
+    // Between 0.1 and 1 the plain unit reads better than thousandths of it.
+    const int kept = step == -1 && largest >= 0.1 ? 0 : step;
+    return {std::pow(10.0, -3 * kept), prefixes.at(static_cast<std::size_t>(kept + 4)) + unit};
+}
+
+double round_below(double limit) {
+    const double power = std::pow(10.0, std::floor(std::log10(limit)));
+    for (const double factor : {5.0, 2.0}) {
+        if (factor * power <= limit) return factor * power;
+    }
+    return power;
+}
+
+std::string gnuplot_script(const Chart& chart) {
+    std::string text = fmt::format(fmt::runtime(script_head), chart.name, chart.height, chart.height * 8 / 5);
+    text += chart.settings;
+    const bool several = chart.panels.size() > 1 || !chart.title.empty();
+    if (several) text += "set multiplot";
+    if (!chart.title.empty()) text += fmt::format(" title {} font ',15'", gnuplot_text(chart.title));
+    if (several) text += "\n";
+    for (const Panel& panel : chart.panels) text += panel_commands(panel);
+    return text + (several ? "unset multiplot\n" : "") + "unset output\n}\n";
+}
+
+}  // namespace nsma

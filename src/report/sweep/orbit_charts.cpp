@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sweep_charts.hpp"
+#include "orbit/motion_waves.hpp"
+
+namespace nsma {
+namespace {
+
+const Pattern& pattern_of(const StoredOrbit& stored) { return stored.orbit.kernel.pattern; }
+
+std::string orbit_label(const StoredOrbit& stored) {
+    const Pattern& pattern = pattern_of(stored);
+    const bool closed = stored.orbit.bar.gap_sign() == 0;
+    return fmt::format("E{} = {:.3g}{}, T/τ = {:.4g} (r = {}, p = {})", closed ? "" : "/E_g", stored.energy,
+                       closed ? " J" : "", pattern.period_ratio(), pattern.free_steps, pattern.contact_steps);
+}
+
+/// What the axes of the orbits must show, in SI units.
+struct Extent {
+    double force = 0;
+    double tip = 0;
+    double lowest = 0;  ///< tip displacement
+    double period = 0;  ///< T/tau
+};
+
+Extent extent_of(const OrbitChoice& choice, const Bar& bar) {
+    Extent extent{.lowest = bar.gap};
+    for (const StoredOrbit* stored : choice.orbits) {
+        const Eigen::VectorXd tip = tip_displacement(stored->orbit);
+        extent.force = std::max(extent.force, contact_force(stored->orbit).cwiseAbs().maxCoeff());
+        extent.tip = std::max(extent.tip, tip.cwiseAbs().maxCoeff());
+        extent.lowest = std::min(extent.lowest, tip.minCoeff());
+        extent.period = std::max(extent.period, pattern_of(*stored).period_ratio());
+    }
+    return extent;
+}
+
+/// A row of an orbit's block: time t/tau, value and, where a mark stands, the value again.
+std::string orbit_row(const Pattern& pattern, Eigen::Index step, double value, bool marked) {
+    const double shown = value + 0.0;  // no negative zero
+    return fmt::format("{} {} {}\n", static_cast<double>(step) / pattern.cells, shown,
+                       marked ? fmt::format("{}", shown) : "NaN");
+}
+
+std::string tip_rows(const Orbit& orbit, double factor) {
+    const Pattern& pattern = orbit.kernel.pattern;
+    const Eigen::VectorXd tip = tip_displacement(orbit) * factor;
+    const Eigen::Index every = std::max(1, pattern.free_steps / 8);
+    std::string rows;
+    for (Eigen::Index n = 0; n < tip.size(); ++n) {
+        rows += orbit_row(pattern, n, tip(n), n > 0 && n < pattern.free_steps && (n + every / 2) % every == 0);
+    }
+    return rows;
+}
+
+std::string force_rows(const Orbit& orbit, double factor) {
+    const Pattern& pattern = orbit.kernel.pattern;
+    const Eigen::VectorXd force = contact_force(orbit) * factor;
+    const Eigen::Index middle = pattern.free_steps + pattern.contact_steps / 2;
+    std::string rows;
+    for (Eigen::Index n = 0; n < force.size(); ++n) {  // constant during a step
+        rows += orbit_row(pattern, n, force(n), n == middle) + orbit_row(pattern, n + 1, force(n), false);
+    }
+    return rows;
+}
+
+/// Stress [Pa] at places (columns) and times (rows) over one period.
+Eigen::MatrixXd stress_picture(const Orbit& orbit) {
+    const int cells = orbit.kernel.pattern.cells;
+    const double period = orbit.kernel.pattern.period_ratio();
+    const Eigen::VectorXd waves =
+        motion_waves(orbit) * (orbit.bar.displacement_unit() / orbit.mesh().time_step(orbit.bar));
+    const auto wave_at = [&](double when) {  // b_n [m/s]; in steps, may exceed the period
+        return waves[static_cast<Eigen::Index>(std::floor(when)) % waves.size()];
+    };
+    // The same resolution in place and time, about 200 000 samples, a whole number of samples a
+    // cell where it can be.
+    const int wanted = static_cast<int>(std::clamp(std::sqrt(2e5 / period), 20.0, 400.0));
+    const int columns = cells < wanted ? cells * ((wanted + cells - 1) / cells) : wanted;
+    const int rows = static_cast<int>(std::clamp(std::round(columns * period), 2.0, 1000.0));
+    Eigen::MatrixXd stress(rows, columns);
+    for (int row = 0; row < rows; ++row) {
+        const double now = (row + 0.5) * static_cast<double>(waves.size()) / rows;
+        for (int column = 0; column < columns; ++column) {
+            // Off the middle of a sample, so that no front passes exactly through a sample.
+            const double place = (column + 0.25) * cells / columns;
+            stress(row, column) =
+                -orbit.bar.impedance() * (wave_at(now + cells - place) + wave_at(now + cells + place));
+        }
+    }
+    return stress;
+}
+
+}  // namespace
+
+Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
+    const Bar& bar = sweep.scene.bar;
+    const Extent extent = extent_of(choice, bar);
+    const bool closed = bar.gap_sign() == 0;
+    const ScaledUnit force = scaled_unit(extent.force, "N");
+    const ScaledUnit length = closed ? scaled_unit(extent.tip, "m") : ScaledUnit{1.0 / bar.displacement_unit(), "|d|"};
+    const double at_wall = bar.gap * length.factor;
+    const double head = 0.12 * std::max((bar.gap - extent.lowest) * length.factor, 1e-9);
+    const double largest_force = std::max(extent.force * force.factor, 1e-9);
+    const std::string times = range(0.0, 1.01 * extent.period);
+    Panel tips{.frame = Frame{0.12, 0.97, 0.52, 0.92},
+               .title = fmt::format("{}: {}", sweep.scene.title, choice.what),
+               .x = {"", times, "format ''"},
+               .y = {closed ? fmt::format("tip displacement x ({})", length.unit) : "tip displacement x/|d|",
+                     range(extent.lowest * length.factor - head, at_wall + head)},
+               .settings = wall(at_wall, at_wall + 0.5 * head, "wall, x = d"),
+               .curves = {{fmt::format("{}", at_wall), "lines lw 1.5 lc rgb '#333333'"}}};
+    Panel forces{
+        .frame = Frame{0.12, 0.97, 0.26, 0.48},
+        .x = {"time t/τ, τ = L/c", times, "format '%g'"},
+        // The steps 1, 2, 5 are so closed under inversion that this is the least one with at most 4.5 a range.
+        .y = {fmt::format("contact force λ ({})", force.unit), range(-1.15 * largest_force, 0.1 * largest_force),
+              fmt::format("{}", 1.0 / round_below(4.5 / largest_force))},
+        .key = "at screen 0.535, screen 0.14 center top vertical maxrows 3 samplen 5",
+        .curves = {{"0", "lines lw 1 lc rgb '#999999'"}}};
+    Chart chart{.name = "orbits",
+                .data = fmt::format("# {}: time t/tau, then tip displacement [{}] or contact force [{}]; "
+                                    "third column: where a marker stands\n",
+                                    sweep.scene.title, length.unit, force.unit),
+                .settings = "set ylabel offset 0.5,0\n"};
+    for (std::size_t i = 0; i < choice.orbits.size(); ++i) {
+        const Orbit& orbit = choice.orbits[i]->orbit;
+        const CurveStyle& style = curve_styles.at(i);
+        const auto draw = [&](Panel& panel, const char* quantity, const std::string& rows) {
+            const std::string block = chart.add(fmt::format("{}-{}", quantity, i + 1), rows);
+            panel.curves.push_back({block + " using 1:2", fmt::format("lines lw 2 {}", style.line)});
+            panel.curves.push_back(
+                {block + " using 1:3", fmt::format("points ps 0.8*mark pt {} {}", style.mark, style.line)});
+        };
+        draw(tips, "tip", tip_rows(orbit, length.factor));
+        draw(forces, "force", force_rows(orbit, force.factor));
+        forces.curves.push_back({"NaN", marked_line(style, 0.8), orbit_label(*choice.orbits[i])});  // of both panels
+    }
+    chart.panels = {tips, forces};
+    return chart;
+}
+
+Chart space_time_chart(const StoredSweep& sweep, const StoredOrbit& stored) {
+    const Pattern& pattern = pattern_of(stored);
+    const double period = pattern.period_ratio();
+    const double touch = static_cast<double>(pattern.free_steps) / pattern.cells;
+    const Eigen::MatrixXd stress = stress_picture(stored.orbit);
+    const double largest = stress.cwiseAbs().maxCoeff();
+    const ScaledUnit unit = scaled_unit(largest, "Pa");
+    Chart chart{.name = "space-time",
+                .data = fmt::format("# {}: stress [{}]; {} rows over one period, {} columns over the bar\n",
+                                    sweep.scene.title, unit.unit, stress.rows(), stress.cols())};
+    for (int row = 0; row < stress.rows(); ++row) {
+        for (int column = 0; column < stress.cols(); ++column) {
+            chart.data += fmt::format("{}{:.5g}", column == 0 ? "" : " ", stress(row, column) * unit.factor + 0.0);
+        }
+        chart.data += '\n';
+    }
+    chart.settings = fmt::format(
+        R"(# cividis: its luminance grows steadily, so that grey print keeps the order
+set palette defined (0 '#00224e', 0.125 '#123570', 0.25 '#3b496c', 0.375 '#575d6d', 0.5 '#707173', 0.625 '#8a8678', 0.75 '#a59c74', 0.875 '#c3b369', 1 '#fee838')
+set colorbox user origin screen 0.865, screen 0.13 size screen 0.025, screen 0.78
+set cblabel 'stress σ ({}), tension > 0' offset 1.2,0
+set cbrange [-{bound}:{bound}]
+set title enhanced
+set arrow from graph 1.012, first {} to graph 1.012, first {} nohead lw 6 lc rgb '#000000'
+)",
+        unit.unit, touch, period, fmt::arg("bound", std::max(largest * unit.factor, 1e-9)));
+    chart.panels = {
+        {.frame = Frame{0.11, 0.77, 0.13, 0.91},
+         .title = orbit_label(stored),
+         .x = {"position s/L", "0:1"},
+         .y = {"time t/τ, τ = L/c", range(0.0, period)},
+         .settings = fmt::format("set label 'contact' at graph 1.03, first {} left\n"
+                                 "set label 'free' at graph 1.03, first {} left textcolor rgb '#555555'\n",
+                                 (touch + period) / 2.0, touch / 2.0),
+         .curves = {{fmt::format("'space-time.dat' matrix using (($1 + 0.5)*{}):(($2 + 0.5)*{}):3",
+                                 1.0 / static_cast<double>(stress.cols()), period / static_cast<double>(stress.rows())),
+                     "image"}}}};
+    return chart;
+}
+
+}  // namespace nsma
