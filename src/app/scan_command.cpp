@@ -1,3 +1,5 @@
+#include <map>
+
 #include <fmt/format.h>
 
 #include "command.hpp"
@@ -16,12 +18,12 @@ int run_scan(const Arguments& arguments, const std::atomic<bool>& stop) {
     bool failed = false;
     KindCounts admissible;
     Sieve sieve(scene.mesh.cells, scene.bar.gap_sign());
-    SieveCounts decided;
+    std::map<Finding, long> decided;
     Progress progress("scan", arguments.quiet);
     const auto take = [&](const PatternRecord& record) {
         progress.show(++done, total);
         const Pattern& pattern = record.pattern;
-        ++decided.of[static_cast<std::size_t>(sieve(pattern.free_steps, pattern.contact_steps).finding)];
+        ++decided[sieve(pattern.free_steps, pattern.contact_steps).finding];
         if (record.kind) admissible.add(*record.kind);
         if (record.verdict == Verdict::failed) {
             failed = true;

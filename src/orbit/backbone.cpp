@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "gap_sign.hpp"
 #include "nsma/wave/mesh.hpp"
 
 namespace nsma {
@@ -15,12 +16,6 @@ namespace {
 void require_mode(int mode) {
     if (mode < 1) {
         throw std::invalid_argument(fmt::format("mode: expected at least 1, got {}", mode));
-    }
-}
-
-void require_sign(int gap_sign) {
-    if (gap_sign < -1 || gap_sign > 1) {
-        throw std::invalid_argument(fmt::format("gap_sign: expected -1, 0 or 1, got {}", gap_sign));
     }
 }
 
@@ -44,7 +39,7 @@ double backbone_energy_ratio(int mode, double period_ratio) {
 
 PeriodInterval backbone_period_interval(int mode, int gap_sign) {
     require_mode(mode);
-    require_sign(gap_sign);
+    validate_gap_sign(gap_sign);
     const double k = mode;
     const double singular = (2.0 * k + 1.0) / (k * k);
     if (gap_sign > 0) {
@@ -58,7 +53,7 @@ PeriodInterval backbone_period_interval(int mode, int gap_sign) {
 
 std::vector<Pattern> mode_patterns(int mode, int cells, int gap_sign) {
     require_mode(mode);
-    require_sign(gap_sign);
+    validate_gap_sign(gap_sign);
     validate(Mesh{cells});
     std::vector<Pattern> patterns;
     const std::int64_t k = mode;

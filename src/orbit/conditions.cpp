@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "gap_sign.hpp"
+
 namespace nsma {
 
 namespace {
@@ -18,9 +20,7 @@ double Conditions::energy_factor() const {
 }
 
 Conditions conditions(const Kernel& kernel, int gap_sign) {
-    if (gap_sign < -1 || gap_sign > 1) {
-        throw std::invalid_argument(fmt::format("gap_sign: expected -1, 0 or 1, got {}", gap_sign));
-    }
+    validate_gap_sign(gap_sign);
     using Sign = Conditions::Sign;
     Conditions result;
     result.kernel = kernel;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fnv_hash.hpp"
 #include "minimal_period.hpp"
 #include "nsma/orbit/conditions.hpp"
 
@@ -126,14 +127,13 @@ std::array<std::uint64_t, 2> fingerprints(const LabelledMotion& motion) {
     for (const double wave : motion.waves) largest = std::max(largest, std::abs(wave));
     std::array<std::uint64_t, 2> result{};
     for (std::size_t grid = 0; grid < 2; ++grid) {
-        std::uint64_t hash = 14695981039346656037U;  // FNV-1a
-        const auto add = [&hash](std::int64_t value) {
-            hash = (hash ^ static_cast<std::uint64_t>(value)) * 1099511628211U;
-        };
-        add(motion.label.free_steps);
-        add(motion.label.contact_steps);
-        for (const double wave : motion.waves) add(std::llround(steps * wave / largest + (grid == 0 ? 0.0 : 0.5)));
-        result.at(grid) = hash;
+        FnvHash hash;
+        hash.add(static_cast<std::uint64_t>(motion.label.free_steps));
+        hash.add(static_cast<std::uint64_t>(motion.label.contact_steps));
+        for (const double wave : motion.waves) {
+            hash.add(static_cast<std::uint64_t>(std::llround(steps * wave / largest + (grid == 0 ? 0.0 : 0.5))));
+        }
+        result.at(grid) = hash.value();
     }
     return result;
 }

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
-
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "gap_sign.hpp"
 #include "nsma/wave/mesh.hpp"
 
 namespace nsma {
@@ -19,9 +19,7 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 Sieve::Sieve(int cells, int gap_sign) : cells_(cells), gap_sign_(gap_sign) {
     validate(Mesh{cells});
-    if (gap_sign < -1 || gap_sign > 1) {
-        throw std::invalid_argument(fmt::format("gap_sign: expected -1, 0 or 1, got {}", gap_sign));
-    }
+    validate_gap_sign(gap_sign);
 }
 
 void Sieve::prepare(int period_steps) {
@@ -110,19 +108,6 @@ Sieved Sieve::operator()(int free_steps, int contact_steps) {
     const double ones = simplex ? 1.0 : result.kernel_dimension % 2 == 1 ? m : m - 1;
     result.energy_greatest = unit * ones / scale;
     return result;
-}
-
-long SieveCounts::patterns() const { return std::accumulate(of.begin(), of.end(), 0L); }
-
-SieveCounts sieve_all(int cells, int gap_sign, int period_lo, int period_hi) {
-    Sieve sieve(cells, gap_sign);
-    SieveCounts counts;
-    for (int period = std::max(2, period_lo); period <= period_hi; ++period) {
-        for (int free = 1; free < period; ++free) {
-            ++counts.of[static_cast<std::size_t>(sieve(free, period - free).finding)];
-        }
-    }
-    return counts;
 }
 
 }  // namespace nsma

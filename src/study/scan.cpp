@@ -22,6 +22,9 @@ PatternRecord pattern_record(const PatternProblem& problem, int gap_sign, double
     return record;
 }
 
+namespace {
+
+// The argument of a finding, one line.
 std::string_view argument(Finding finding) {
     switch (finding) {
         case Finding::trivial: return "the kernel is trivial";
@@ -32,8 +35,6 @@ std::string_view argument(Finding finding) {
     }
     return "";
 }
-
-namespace {
 
 PatternRecord sieved_record(const Pattern& pattern, int gap_sign, const Sieved& sieved) {
     PatternRecord record;

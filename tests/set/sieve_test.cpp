@@ -4,6 +4,7 @@
 
 #include "nsma/orbit/backbone.hpp"
 
+#include "../support/sieve_all.hpp"
 #include "general_set.hpp"
 
 namespace nsma {
@@ -53,7 +54,7 @@ TEST(Sieve, AgreesBeyondFourTravelTimesAndOnOtherMeshes) {
 }
 
 TEST(Sieve, CountsOfTheProblemStatement) {
-    const SieveCounts counts = sieve_all(6, 1, 2, 24);
+    const SieveCounts counts = sieve_all(6, 1, 24);
     EXPECT_EQ(counts.patterns(), 276);
     EXPECT_EQ(counts.patterns() - counts[Finding::trivial], 209);
     EXPECT_EQ(counts[Finding::admissible], 35);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -16,8 +15,6 @@ enum class Finding : std::uint8_t {
     penetrates,     ///< a COND1 row is positive for every motion COND3 allows
     admissible      ///< some motion meets COND1-3
 };
-inline constexpr std::array findings{Finding::trivial, Finding::sign_conflict, Finding::wrong_side, Finding::penetrates,
-                                     Finding::admissible};
 
 struct Sieved {
     Finding finding = Finding::trivial;
@@ -61,13 +58,5 @@ private:
     std::vector<Place> of_free_;     // by f = 0..c
     std::vector<std::int8_t> sign_;  // eps by place
 };
-
-/// How many patterns each argument decided, by Finding, over all lo <= n_T <= hi.
-struct SieveCounts {
-    std::array<long, findings.size()> of{};
-    [[nodiscard]] long operator[](Finding finding) const { return of[static_cast<std::size_t>(finding)]; }
-    [[nodiscard]] long patterns() const;
-};
-[[nodiscard]] SieveCounts sieve_all(int cells, int gap_sign, int period_lo, int period_hi);
 
 }  // namespace nsma

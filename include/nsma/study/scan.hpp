@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <string_view>
 
 #include "nsma/orbit/sieve.hpp"
 #include "nsma/search/pattern_problem.hpp"
@@ -23,8 +22,5 @@ enum class ScanMethod {
 /// on as it comes. `keep_going` is asked before each pattern.
 void scan(const Scene& scene, const std::function<void(const PatternRecord&)>& record,
           const std::function<bool()>& keep_going, ScanMethod method = ScanMethod::certified);
-
-/// The argument of a finding, one line.
-[[nodiscard]] std::string_view argument(Finding finding);
 
 }  // namespace nsma

@@ -11,6 +11,7 @@
 
 #include "store_tables.hpp"
 #include "sweep_folder.hpp"
+#include "orbit/fnv_hash.hpp"
 #include "nsma/report/scene_file.hpp"
 
 namespace nsma {
@@ -24,12 +25,9 @@ constexpr const char* part_name = "results.sqlite.part";
 constexpr const char* format = "3";
 
 std::string hash_of(const std::string& text) {
-    std::uint64_t hash = 14695981039346656037U;  // FNV-1a
-    for (const char letter : text) {
-        hash ^= static_cast<unsigned char>(letter);
-        hash *= 1099511628211U;
-    }
-    return fmt::format("{:016x}", hash);
+    FnvHash hash;
+    for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
+    return fmt::format("{:016x}", hash.value());
 }
 
 }  // namespace
