@@ -1,11 +1,5 @@
 // The ways in which Ipopt and NLopt are known to fail, by their number in the table the project
 // started from. Each test asserts what we answer; what the library says may change with its version.
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -13,12 +7,12 @@
 #include <limits>
 #include <sstream>
 #include <string>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "../numerics/textbook.hpp"
+#include "../support/process.hpp"
 
 #include "numerics/polish.hpp"
 #include "numerics/solver.hpp"
@@ -26,8 +20,6 @@
 #include "nsma/search/orbit_solver.hpp"
 #include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
-
-extern char** environ;  // NOLINT: the name POSIX gives it
 
 namespace {
 
@@ -88,50 +80,23 @@ std::string message_of(Call call) {
 
 struct Child {
     bool in_time = false;
-    int status = 0;  ///< of waitpid
+    int exit_code = 0;  ///< -signal when a signal ended it
     std::string out;
     double seconds = 0;
 };
 
 /// Runs solver_child with one argument; after `limit` seconds it is killed, by its own id.
 Child run_child(const std::string& name, double limit) {
+    const process::Folder folder;
+    const auto out = folder.path() / "out";
     const auto begin = std::chrono::steady_clock::now();
-    const auto elapsed = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    };
-    int ends[2];
-    EXPECT_EQ(pipe(ends), 0);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addclose(&actions, ends[0]);
-    posix_spawn_file_actions_addclose(&actions, ends[1]);
-    std::string program = NSMA_SOLVER_CHILD;
-    std::string argument = name;
-    char* words[] = {program.data(), argument.data(), nullptr};
-    pid_t child = -1;
-    EXPECT_EQ(posix_spawn(&child, program.c_str(), &actions, nullptr, words, environ), 0);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
+    const pid_t child = process::start({NSMA_SOLVER_CHILD, name}, out, "/dev/null");
     Child result;
-    while (true) {
-        if (waitpid(child, &result.status, WNOHANG) == child) {
-            result.in_time = true;
-            break;
-        }
-        if (elapsed() > limit) {
-            kill(child, SIGKILL);
-            waitpid(child, &result.status, 0);
-            break;
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    char buffer[512];
-    for (ssize_t got = 0; (got = read(ends[0], buffer, sizeof buffer)) > 0;)
-        result.out.append(buffer, static_cast<std::size_t>(got));
-    close(ends[0]);
-    result.seconds = elapsed();
+    result.in_time = process::wait_for([child] { return process::ended(child); }, limit);
+    if (!result.in_time) kill(child, SIGKILL);
+    result.exit_code = process::finish(child);
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.out = process::contents(out);
     return result;
 }
 
@@ -255,7 +220,7 @@ TEST(FailureTable, Row07CobylaWithoutXtol) {
     for (const char* name : {"cobyla", "auglag", "slsqp"}) {
         const Child child = run_child(name, patience);
         EXPECT_TRUE(child.in_time) << name << " hung";
-        EXPECT_TRUE(WIFEXITED(child.status) && WEXITSTATUS(child.status) == 0) << name << ": " << child.out;
+        EXPECT_EQ(child.exit_code, 0) << name << ": " << child.out;
         double seconds = 0;
         std::istringstream(child.out.substr(child.out.find_last_of(' ') + 1)) >> seconds;
         EXPECT_LT(seconds, 0.05 + 5.0) << name << ": " << child.out;  // the limit, on a busy machine
@@ -268,7 +233,7 @@ TEST(FailureTable, Row07CobylaWithoutXtol) {
 
 TEST(FailureTable, Row08AuglagWithoutALocalOptimiser) {
     const Child raw = run_child("raw-auglag", patience);
-    RecordProperty("raw_auglag_signal", WIFSIGNALED(raw.status) ? WTERMSIG(raw.status) : 0);
+    RecordProperty("raw_auglag_signal", std::max(0, -raw.exit_code));
     const auto item = textbook::circle();
     const auto outcome = solve_with_nlopt(NloptMethod::auglag_lbfgs, item.program, start);
     EXPECT_LT(item.program.violation(outcome.x), 1e-4) << outcome.status;  // first order multipliers
@@ -333,7 +298,7 @@ TEST(FailureTable, Row12IpoptFromThreads) {
     IpoptSolver solver;
     const VectorXd before = solver.solve(item.program, start).x;
     const Child raw = run_child("threads", 5.0);
-    RecordProperty("threads_signal", WIFSIGNALED(raw.status) && raw.in_time ? WTERMSIG(raw.status) : 0);
+    RecordProperty("threads_signal", raw.in_time ? std::max(0, -raw.exit_code) : 0);
     EXPECT_EQ(solver.solve(item.program, start).x, before);
     // One solver a process: nothing that calls a solver makes threads.
     int files = 0;
