@@ -5,6 +5,7 @@
 #include <string>
 
 #include "decompositions.hpp"
+#include "expect_size.hpp"
 
 namespace nsma {
 namespace {
@@ -111,10 +112,7 @@ private:
 
 NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& target,
                                               double tolerance) {
-    if (matrix.rows() != target.size()) {
-        throw std::invalid_argument("target: expected size " + std::to_string(matrix.rows()) + ", got " +
-                                    std::to_string(target.size()));
-    }
+    expect_size("target", matrix.rows(), target.size());
     return LawsonHanson(matrix, target, tolerance).run();
 }
 

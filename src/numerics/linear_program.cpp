@@ -1,4 +1,5 @@
 #include "linear_program.hpp"
+#include "expect_size.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -23,12 +24,6 @@ double clp_bound(double bound) {
     if (bound == no_bound) return COIN_DBL_MAX;
     if (bound == -no_bound) return -COIN_DBL_MAX;
     return bound;
-}
-
-void expect_size(const char* name, Eigen::Index expected, Eigen::Index got) {
-    if (expected == got) return;
-    throw std::invalid_argument(std::string(name) + ": expected size " + std::to_string(expected) + ", got " +
-                                std::to_string(got));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "program.hpp"
+#include "expect_size.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +8,6 @@
 
 namespace nsma {
 namespace {
-
-void expect_size(const char* name, Eigen::Index expected, Eigen::Index got) {
-    if (expected == got) return;
-    throw std::invalid_argument(std::string(name) + ": expected size " + std::to_string(expected) + ", got " +
-                                std::to_string(got));
-}
 
 void expect_finite(const char* name, const Eigen::VectorXd& values) {
     if (values.allFinite()) return;

@@ -5,14 +5,9 @@
 #include <fmt/format.h>
 
 #include "gap_sign.hpp"
+#include "index.hpp"
 
 namespace nsma {
-
-namespace {
-
-std::size_t index(int n) { return static_cast<std::size_t>(n); }
-
-}  // namespace
 
 double Conditions::energy_factor() const {
     const double cells = kernel.pattern.cells;

@@ -1,12 +1,7 @@
 #include "nsma/orbit/kernel.hpp"
+#include "index.hpp"
 
 namespace nsma {
-
-namespace {
-
-std::size_t index(int n) { return static_cast<std::size_t>(n); }
-
-}  // namespace
 
 Kernel exact_kernel(const Pattern& pattern) {
     validate(pattern);

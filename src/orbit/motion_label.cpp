@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "fnv_hash.hpp"
+#include "index.hpp"
 #include "minimal_period.hpp"
 #include "nsma/orbit/conditions.hpp"
 
 namespace nsma {
 namespace {
-
-std::size_t at(int n) { return static_cast<std::size_t>(n); }
 
 // One shortest period of a motion: its waves, and which steps press or rest at the wall.
 struct Cycle {
@@ -19,7 +18,9 @@ struct Cycle {
     std::vector<char> rests;
 
     [[nodiscard]] int steps() const { return static_cast<int>(waves.size()); }
-    [[nodiscard]] bool at_wall(int n) const { return loaded[at(n % steps())] != 0 || rests[at(n % steps())] != 0; }
+    [[nodiscard]] bool at_wall(int n) const {
+        return loaded[index(n % steps())] != 0 || rests[index(n % steps())] != 0;
+    }
 };
 
 // Steps [begin, begin + steps) at the wall, begin in [0, n_T), cyclically.
@@ -47,13 +48,14 @@ std::vector<Rest> contacts_of(const Cycle& cycle) {
     std::vector<Rest> all = rests_of(cycle);
     if (all.empty()) {
         for (int n = 0; n < period; ++n) {
-            if (cycle.rests[at(n)] != 0 && cycle.loaded[at(n)] == 0) all.push_back({(n + 1) % period, period - 1});
+            if (cycle.rests[index(n)] != 0 && cycle.loaded[index(n)] == 0)
+                all.push_back({(n + 1) % period, period - 1});
         }
         return all;
     }
     const auto presses = [&](const Rest& rest) {
         for (int n = rest.begin; n < rest.begin + rest.steps; ++n) {
-            if (cycle.loaded[at(n % period)] != 0) return true;
+            if (cycle.loaded[index(n % period)] != 0) return true;
         }
         return false;
     };
@@ -71,12 +73,12 @@ std::vector<Rest> contacts_of(const Cycle& cycle) {
 // Flight first, then contact; backward in time a wave changes its sign with the free step it arrives in.
 std::vector<double> waves_from(const Cycle& cycle, int flight_begin, int free_steps, bool reversed) {
     const int period = cycle.steps();
-    std::vector<double> waves(at(period));
+    std::vector<double> waves(index(period));
     for (int n = 0; n < period; ++n) {
         const bool flight = n < free_steps;
         const int back = flight ? free_steps - 1 - n : free_steps + period - 1 - n;
         const int step = (flight_begin + (reversed ? back : n)) % period;
-        waves[at(n)] = reversed && flight ? -cycle.waves[at(step)] : cycle.waves[at(step)];
+        waves[index(n)] = reversed && flight ? -cycle.waves[index(step)] : cycle.waves[index(step)];
     }
     return waves;
 }

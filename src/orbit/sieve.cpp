@@ -8,15 +8,10 @@
 #include <fmt/format.h>
 
 #include "gap_sign.hpp"
+#include "index.hpp"
 #include "nsma/wave/mesh.hpp"
 
 namespace nsma {
-namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-}  // namespace
-
 Sieve::Sieve(int cells, int gap_sign) : cells_(cells), gap_sign_(gap_sign) {
     validate(Mesh{cells});
     validate_gap_sign(gap_sign);
@@ -27,15 +22,15 @@ void Sieve::prepare(int period_steps) {
     classes_ = std::gcd(2 * cells_, period_steps);
     places_ = period_steps / classes_;
     step_ = (2 * cells_ / classes_) % places_;
-    of_free_.assign(at(places_) + 1, Place{});
-    sign_.resize(at(places_));
+    of_free_.assign(index(places_) + 1, Place{});
+    sign_.resize(index(places_));
     const auto decide = [this](int contact_places) {
         const int free_places = places_ - contact_places;
-        if (free_places % 2 == 0) of_free_[at(free_places)] = walk(free_places);
+        if (free_places % 2 == 0) of_free_[index(free_places)] = walk(free_places);
     };
     if (places_ % 2 == 0) {
         // No contact place: the signs alternate, x_0 = -P_m.
-        of_free_[at(places_)] = {gap_sign_ > 0 ? Finding::admissible : Finding::wrong_side, 1};
+        of_free_[index(places_)] = {gap_sign_ > 0 ? Finding::admissible : Finding::wrong_side, 1};
     }
     decide(1);
     if (places_ == 1) return;
@@ -58,13 +53,13 @@ void Sieve::prepare(int period_steps) {
 Sieve::Place Sieve::walk(int free_places) {
     int sign = 1;
     for (int step = 0, place = 0; step < places_; ++step) {
-        sign_[at(place)] = static_cast<std::int8_t>(sign);
+        sign_[index(place)] = static_cast<std::int8_t>(sign);
         if (place < free_places) sign = -sign;
         place += step_;
         if (place >= places_) place -= places_;
     }
     // The sign that COND3 gives the amplitudes: that of any contact place.
-    const int side = sign_[at(free_places)];
+    const int side = sign_[index(free_places)];
     const int window = 2 * cells_ / classes_;
     const auto sum_to = [this](int end) {
         return std::accumulate(sign_.begin(), sign_.begin() + end, std::int64_t{0});
@@ -73,7 +68,7 @@ Sieve::Place Sieve::walk(int free_places) {
     if (gap_sign_ == 0 ? weight != 0 : gap_sign_ * weight <= 0) return {Finding::wrong_side, 0};
     int height = 0;
     for (int place = 0; place < free_places; ++place) {
-        height += side * sign_[at(place)];
+        height += side * sign_[index(place)];
         if (height > 0) return {Finding::penetrates, 0};
     }
     return {Finding::admissible, static_cast<std::int32_t>(std::abs(weight))};
@@ -92,7 +87,7 @@ Sieved Sieve::operator()(int free_steps, int contact_steps) {
     result.kernel_dimension = q % 2 == 0 ? classes_ - s : s;
     if (result.kernel_dimension == 0) return result;
     const int free_places = q % 2 == 0 ? q : q + 1;  // of the live classes
-    const Place& place = of_free_[at(free_places)];
+    const Place& place = of_free_[index(free_places)];
     result.finding = place.finding;
     if (place.finding != Finding::admissible) return result;
     if (gap_sign_ == 0) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/expect_size.hpp"
 #include "numerics/polish.hpp"
 #include "nsma/set/admissible_set.hpp"
 
@@ -27,10 +28,7 @@ double checked_level(const RelaxedSet& set, Objective objective, std::optional<d
         throw std::invalid_argument(std::string("level: expected ") + (extreme ? "none" : "one") + " for objective " +
                                     std::string(name(objective)));
     }
-    if (start.size() != set.dimension()) {
-        throw std::invalid_argument("beta: expected size " + std::to_string(set.dimension()) + ", got " +
-                                    std::to_string(start.size()));
-    }
+    expect_size("beta", set.dimension(), start.size());
     return level.value_or(set.energy(start));
 }
 

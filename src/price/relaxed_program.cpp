@@ -1,4 +1,5 @@
 #include "relaxed_program.hpp"
+#include "numerics/expect_size.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,10 +39,7 @@ void set_objective(RelaxedProgram& result, const RelaxedSet& set, Objective obje
             break;
         }
         case Objective::nearest: {
-            if (reference.size() != window) {
-                throw std::invalid_argument("reference: expected size " + std::to_string(window) + ", got " +
-                                            std::to_string(reference.size()));
-            }
+            expect_size("reference", window, reference.size());
             // 2N |W beta - ref|^2 with W'W = (2N/g) I; in x the unit is the energy of the level.
             const double per_class = static_cast<double>(window) / kernel.classes;
             hessian.diagonal().setConstant(2.0);

@@ -1,4 +1,5 @@
 #include "nsma/price/relaxed_set.hpp"
+#include "numerics/expect_size.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -28,10 +29,7 @@ struct Rows {
 }  // namespace
 
 Eigen::VectorXd RelaxedSet::limits(const Shift& shift) const {
-    if (shift.rows.size() != 0 && shift.rows.size() != rows.rows()) {
-        throw std::invalid_argument("rows: expected size " + std::to_string(rows.rows()) + ", got " +
-                                    std::to_string(shift.rows.size()));
-    }
+    if (shift.rows.size() > 0) expect_size("rows", rows.rows(), shift.rows.size());
     Eigen::VectorXd result = shift.rows.size() > 0 ? shift.rows : Eigen::VectorXd::Zero(rows.rows());
     for (std::size_t i = 0; i < condition.size(); ++i) {
         if (condition[i].condition == Condition::cond1) {

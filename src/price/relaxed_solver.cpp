@@ -20,7 +20,7 @@ constexpr double activity = 1e-7;
 constexpr double direction_tolerance = 1e-7;
 constexpr int climb_limit = 50;
 // Energies of vertices and lengths of steps differ by rounding only.
-constexpr double rounding = 1e-12;
+constexpr double energy_rounding = 1e-12;
 
 // The linear rows of a program without bounds on its unknowns, over x = plus - minus with both
 // >= 0: CLP has called points optimal that were not, or cycled, where every unknown was free.
@@ -119,7 +119,7 @@ public:
             }
         }
         std::stable_sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) {
-            return a.squaredNorm() > b.squaredNorm() * (1 + rounding);
+            return a.squaredNorm() > b.squaredNorm() * (1 + energy_rounding);
         });
         for (auto& x : found_) x *= form_.scale;
         return std::move(found_);
@@ -133,7 +133,7 @@ private:
             if (solution.status != LinearStatus::optimal) return;
             direction = sharpened(form_.program, solution.x);
             const double value = direction.squaredNorm();
-            if (value <= best * (1 + rounding)) return;
+            if (value <= best * (1 + energy_rounding)) return;
             best = value;
             keep(direction);
         }
@@ -208,7 +208,7 @@ RelaxedInterval relaxed_interval(const RelaxedSet& set, const Shift& shift, bool
     result.vertices = Climber(form).vertices(known);
     if (result.vertices.empty()) result.vertices = {result.least_point};
     result.greatest = std::max(result.least, set.energy(result.vertices.front()));
-    result.empty = rest && set.energy(result.vertices.front()) <= rounding * set.energy_factor;
+    result.empty = rest && set.energy(result.vertices.front()) <= energy_rounding * set.energy_factor;
     return result;
 }
 

@@ -14,7 +14,7 @@ constexpr double side_tolerance = 1e-8;
 // Tied optima share their objective to the rounding of two polishes.
 constexpr double tie_tolerance = 1e-9;
 // Multipliers of a few units whose terms cancel leave a few roundings.
-constexpr double rounding = 1e-14;
+constexpr double slope_rounding = 1e-14;
 // Optima closer than this, relative, are one.
 constexpr double same_point = MagnitudeBounds{}.positive;
 
@@ -35,7 +35,7 @@ Slope from_sides(const Side& right, const Side& left) {
     slope.kind = Slope::Kind::one_sided;
     // A side that is rounding beside the other is zero; + 0.0: no negative zeros in tables.
     const auto number = [](const Side& side, const Side& other) {
-        return std::abs(side.value) > rounding * std::abs(other.value) ? side.value : 0.0;
+        return std::abs(side.value) > slope_rounding * std::abs(other.value) ? side.value : 0.0;
     };
     if (right.status == Side::Status::finite) slope.right = number(right, left) + 0.0;
     if (right.status == Side::Status::root) slope.right_root = right.value;

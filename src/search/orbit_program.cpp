@@ -1,4 +1,5 @@
 #include "orbit_program.hpp"
+#include "numerics/expect_size.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -96,10 +97,7 @@ OrbitProgram orbit_program(const Reduction& reduction, const Kernel& kernel, Obj
         throw std::invalid_argument("level: expected a finite number > 0, got " + std::to_string(level));
     }
     const int window = 2 * kernel.pattern.cells;
-    if (objective == Objective::nearest && reference.size() != window) {
-        throw std::invalid_argument("reference: expected size " + std::to_string(window) + ", got " +
-                                    std::to_string(reference.size()));
-    }
+    if (objective == Objective::nearest) expect_size("reference", window, reference.size());
     OrbitProgram result;
     result.scale = std::sqrt(level / reduction.energy_factor);
     set_constraints(result, reduction, objective == Objective::least_force);

@@ -14,7 +14,7 @@ namespace {
 // Beyond this size a derivative-free method only meets its limit.
 constexpr int derivative_free_limit = 32;
 constexpr int quick_derivative_free_limit = 2;
-constexpr double slow_run = 0.2;  // seconds; such work is not repeated
+constexpr double slow_solve = 0.2;  // seconds; such work is not repeated
 
 AccuracySizes accuracy_sizes(bool quick) {
     if (quick) {
@@ -56,7 +56,7 @@ ProgramRecord measure(const ProgramMethod& method, const std::vector<ProgramCase
         return total / static_cast<double>(work.size());
     };
     ProgramRecord record;
-    record.seconds = repeated(sizes.repeats, seconds_a_run, slow_run);
+    record.seconds = repeated(sizes.repeats, seconds_a_run, slow_solve);
     static_cast<MethodRuns&>(record) = counted(cases.front(), method.name(), trials);
     record.proved = std::all_of(cases.begin(), cases.end(), [](const auto& on) { return on.proved; });
     record.setting = method.setting();

@@ -8,7 +8,7 @@ namespace {
 
 constexpr KernelMethod methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd,
                                     KernelMethod::rank_revealing_qr, KernelMethod::matrix_powers};
-constexpr double slow_run = 0.5;  // seconds; one run of such work is enough
+constexpr double slow_kernel = 0.5;  // seconds; one run of such work is enough
 
 void study_tolerances(AccuracyRun& run, const Pattern& pattern) {
     Eigen::VectorXd tolerances(17);
@@ -38,7 +38,7 @@ void study_kernels(AccuracyRun& run) {
             Eigen::MatrixXd basis;
             const auto find = [&] { basis = kernel_space(method, bar, pattern); };
             const Spread seconds = repeated(
-                run.sizes.repeats, [&] { return cpu_seconds_of(find); }, slow_run);
+                run.sizes.repeats, [&] { return cpu_seconds_of(find); }, slow_kernel);
             run.add(KernelRecord{pattern, std::string(name(method)), seconds, static_cast<int>(basis.cols()),
                                  kernel_dimension(pattern), space_distance(basis, exact)});
         }

@@ -1,4 +1,5 @@
 #include "sweep_queue.hpp"
+#include "orbit/index.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -12,8 +13,6 @@ constexpr int warm_strand = 8;
 // them. A verdict takes some 50 us, and more with m n_T.
 constexpr double batch_work = 20'000;
 constexpr double verdict_work = 1'000;
-
-std::size_t at(long index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
@@ -68,7 +67,7 @@ void SweepQueue::release(int worker) {
 }
 
 void SweepQueue::verdict_done(const WorkResult& result) {
-    State& state = state_.at(at(result.pattern));
+    State& state = state_.at(index(result.pattern));
     if (state == State::done) return;
     state = State::done;
     --undecided_;
@@ -77,7 +76,7 @@ void SweepQueue::verdict_done(const WorkResult& result) {
     total_ += last_place_;
     Open& open = open_[result.pattern];
     open.left = last_place_ + 1 - first_place_;
-    open.done.resize(at(open.left));
+    open.done.resize(index(open.left));
     open.strand_length = nearest_ ? std::max(last_place_, 1) : ipopt_is_usual(options_) ? warm_strand : 1;
     for (int place = first_place_; place <= last_place_; place = open.strands.back().end) {
         const int end = place == 0 ? 1 : std::min(place + open.strand_length, last_place_ + 1);
@@ -94,7 +93,7 @@ void SweepQueue::done(const WorkResult& result) {
     const auto found = open_.find(result.pattern);
     if (found == open_.end()) return;
     Open& open = found->second;
-    const auto index = [this](int place) { return at(place - first_place_); };
+    const auto index = [this](int place) { return index(place - first_place_); };
     if (open.done.at(index(result.place))) return;
     open.done[index(result.place)] = true;
     if (result.place > 0) ++done_;
@@ -104,7 +103,7 @@ void SweepQueue::done(const WorkResult& result) {
         return;
     }
     const int number = strand_of(open, result.place);
-    Strand& strand = open.strands[at(number)];
+    Strand& strand = open.strands[index(number)];
     const bool handed = !open.ready.contains(number) && strand.next != result.place;
     while (strand.next < strand.end && open.done[index(strand.next)]) ++strand.next;
     if (strand.next == strand.end) {
@@ -126,7 +125,7 @@ std::optional<WorkUnit> SweepQueue::next_place(long pattern, int worker) {
     const bool own = hold != holds_.end() && hold->second.pattern == pattern && hold->second.place >= 0;
     auto number = own ? open.ready.find(strand_of(open, hold->second.place)) : open.ready.end();
     if (number == open.ready.end()) number = open.ready.begin();
-    const Strand& strand = open.strands[at(*number)];
+    const Strand& strand = open.strands[index(*number)];
     open.ready.erase(number);
     assign(worker, {pattern, strand.next, {}});
     return WorkUnit{pattern, strand.next, strand.before};
@@ -135,7 +134,7 @@ std::optional<WorkUnit> SweepQueue::next_place(long pattern, int worker) {
 std::vector<WorkUnit> SweepQueue::next_verdicts(int worker) {
     std::vector<long> patterns;
     const auto add = [&](long pattern) {
-        if (state_[at(pattern)] == State::left) patterns.push_back(pattern);
+        if (state_[index(pattern)] == State::left) patterns.push_back(pattern);
     };
     while (patterns.empty() && !returned_.empty()) {
         add(returned_.back());
@@ -146,7 +145,7 @@ std::vector<WorkUnit> SweepQueue::next_verdicts(int worker) {
     }
     std::vector<WorkUnit> units;
     for (const long pattern : patterns) {
-        state_[at(pattern)] = State::handed;
+        state_[index(pattern)] = State::handed;
         units.push_back({pattern, -1, {}});
     }
     if (!patterns.empty()) assign(worker, {patterns.back(), -1, patterns});  // the last one's problem is at hand then
@@ -174,14 +173,14 @@ void SweepQueue::lost(int worker) {
     const Hold hold = found->second;
     release(worker);
     for (const long pattern : hold.verdicts) {
-        if (state_[at(pattern)] != State::handed) continue;
-        state_[at(pattern)] = State::left;
+        if (state_[index(pattern)] != State::handed) continue;
+        state_[index(pattern)] = State::left;
         returned_.push_back(pattern);
     }
     const auto open = open_.find(hold.pattern);
     if (hold.place < 0 || open == open_.end()) return;
     const int strand = strand_of(open->second, hold.place);
-    if (open->second.strands[at(strand)].next == hold.place) open->second.ready.insert(strand);
+    if (open->second.strands[index(strand)].next == hold.place) open->second.ready.insert(strand);
 }
 
 }  // namespace nsma

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "orbit/index.hpp"
 #include "nsma/study/scan.hpp"
 
 namespace nsma {
@@ -12,8 +13,6 @@ namespace {
 
 // Levels that the verdicts of one message bring with them: it stays below a megabyte.
 constexpr int most_brought = 1024;
-
-std::size_t at(long index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
@@ -70,7 +69,7 @@ SweepWorker::SweepWorker(const Scene& scene, const OrbitSolverOptions& options)
     : scene_(scene), patterns_(patterns_of(scene)), solver_(options) {}
 
 WorkResult SweepWorker::run(const WorkUnit& unit) {
-    if (unit.pattern < 0 || at(unit.pattern) >= patterns_.size()) {
+    if (unit.pattern < 0 || index(unit.pattern) >= patterns_.size()) {
         throw std::invalid_argument("unit.pattern: expected 0.." + std::to_string(patterns_.size()) +
                                     " (excluded), got " + std::to_string(unit.pattern));
     }
@@ -78,7 +77,7 @@ WorkResult SweepWorker::run(const WorkUnit& unit) {
     if (unit.place < 0 || held_ != unit.pattern) {
         const auto begin = std::chrono::steady_clock::now();
         held_ = -1;
-        problem_ = pattern_problem(patterns_[at(unit.pattern)], scene_.bar.gap_sign());
+        problem_ = pattern_problem(patterns_[index(unit.pattern)], scene_.bar.gap_sign());
         held_ = unit.pattern;
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
         if (unit.place < 0) {
