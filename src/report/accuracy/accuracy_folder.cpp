@@ -7,13 +7,11 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include "numerics/linear_program.hpp"
 #include "numerics/solver.hpp"
 #include "report/csv.hpp"
 #include "report/one_line.hpp"
-#include "report/results_folder.hpp"
 
 namespace nsma {
 namespace {
@@ -166,33 +164,17 @@ AccuracyFolder::AccuracyFolder(const fs::path& folder, const Scene& scene) : fol
     prepare_results_folder(folder, scene, accuracy_files);
     for (const AccuracyRecord& empty : std::initializer_list<AccuracyRecord>{
              ProgramRecord(), KernelRecord(), MarchRecord(), DriftRecord(), StabilityRecord(), ToleranceRecord()}) {
-        const fs::path part = part_of(folder / accuracy_files[empty.index()]);
-        tables_[empty.index()].reset(std::fopen(part.c_str(), "wb"));
-        if (!tables_[empty.index()]) fail_errno(part);
-        write(empty.index(), row_of(empty).header);
-    }
-}
-
-void AccuracyFolder::write(std::size_t table, const std::string& line) {
-    std::FILE* file = tables_[table].get();
-    if (std::fwrite(line.data(), 1, line.size(), file) != line.size() || std::fputc('\n', file) == EOF ||
-        std::fflush(file) != 0) {
-        fail_errno(part_of(folder_ / accuracy_files[table]));
+        tables_.emplace_back(folder / accuracy_files[empty.index()]).write(row_of(empty).header + "\n");
     }
 }
 
 void AccuracyFolder::add(const AccuracyRecord& record) {
     results_.add(record);
-    write(record.index(), row_of(record).fields);
+    tables_[record.index()].write(row_of(record).fields + "\n");
 }
 
 void AccuracyFolder::finish() {
-    for (std::size_t table = 0; table < tables_.size(); ++table) {
-        const fs::path file = folder_ / accuracy_files[table];
-        if (fsync(fileno(tables_[table].get())) != 0 && errno != EINVAL) fail_errno(part_of(file));
-        tables_[table].reset();
-        put_in_place(file);
-    }
+    for (PartFile& table : tables_) table.put_in_place();
     write_whole(folder_ / "causes.csv", causes_table(results_.stability));
     write_whole(folder_ / "winners.csv", winners_table(results_.programs));
     write_whole(folder_ / "machine.txt", machine_text() + "\n");

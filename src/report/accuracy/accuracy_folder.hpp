@@ -1,9 +1,7 @@
 #pragma once
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +9,7 @@
 #include "study/accuracy/accuracy_records.hpp"
 #include "nsma/report/input_error.hpp"
 #include "report/chart.hpp"
+#include "report/results_folder.hpp"
 
 namespace nsma {
 
@@ -33,15 +32,9 @@ public:
     [[nodiscard]] const AccuracyResults& results() const { return results_; }
 
 private:
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
-    void write(std::size_t table, const std::string& line);
-
     std::filesystem::path folder_;
     AccuracyResults results_;
-    /// The first of accuracy_files, in the order of AccuracyRecord.
-    std::array<std::unique_ptr<std::FILE, Close>, std::variant_size_v<AccuracyRecord>> tables_;
+    std::vector<PartFile> tables_;  ///< the first of accuracy_files, in the order of AccuracyRecord
 };
 
 /// Every answer of the record was proved the best by the method itself.

@@ -1,5 +1,6 @@
 #include "work_messages.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -61,8 +62,8 @@ std::string packed(const std::vector<WorkUnit>& units) { return bytes_of(units);
 std::vector<WorkUnit> unpacked_units(std::string_view bytes) { return items_in<WorkUnit>(bytes); }
 
 std::string packed(const std::vector<WorkResult>& results) {
-    std::vector<ResultRows> rows;
-    for (const WorkResult& result : results) rows.push_back(rows_of(result));
+    std::vector<ResultRows> rows(results.size());
+    std::transform(results.begin(), results.end(), rows.begin(), rows_of);
     return bytes_of(rows);
 }
 
