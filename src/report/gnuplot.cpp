@@ -1,3 +1,4 @@
+#include <cerrno>
 #include <cstdio>
 #include <fstream>
 
@@ -5,7 +6,6 @@
 #include <sys/wait.h>
 
 #include "chart.hpp"
-#include "one_line.hpp"
 #include "results_folder.hpp"
 #include "nsma/report/input_error.hpp"
 
