@@ -10,15 +10,6 @@
 namespace nsma {
 namespace {
 
-// b_n over beta for one period: a matrix of n_T x m signs.
-Eigen::MatrixXd waves(const Kernel& kernel) {
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(kernel.pattern.period_steps(), kernel.dimension());
-    for (int n = 0; n < result.rows(); ++n) {
-        if (kernel.column(n) >= 0) result(n, kernel.column(n)) = kernel.sign[static_cast<std::size_t>(n)];
-    }
-    return result;
-}
-
 // `energy`: that of the sphere, or of the scale where there is none.
 void set_objective(RelaxedProgram& result, const RelaxedSet& set, Objective objective, double energy,
                    const Eigen::VectorXd& reference) {
@@ -30,8 +21,9 @@ void set_objective(RelaxedProgram& result, const RelaxedSet& set, Objective obje
     result.objective_unit = energy;
     switch (objective) {
         case Objective::least_shock: {
-            const Eigen::MatrixXd wave = waves(kernel);
-            const auto steps = wave.rows();
+            const int steps = kernel.pattern.period_steps();
+            Eigen::MatrixXd wave(steps, m);  // b_n over beta
+            for (int j = 0; j < m; ++j) wave.col(j) = kernel.waves(Eigen::VectorXd::Unit(m, j));
             Eigen::MatrixXd jump(steps, m);
             jump << wave.bottomRows(steps - 1) - wave.topRows(steps - 1), wave.row(0) - wave.row(steps - 1);
             hessian = 2.0 * jump.transpose() * jump;
