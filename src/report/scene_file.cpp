@@ -24,9 +24,9 @@ constexpr const char* positive_number = "a finite number > 0";
 using Keys = std::vector<std::string_view>;
 
 /// A value of the file, or the place where it is missing; every failure leaves as one InputError.
-class Value {
+class SceneValue {
 public:
-    Value(const std::string& where, std::string key, const toml::node& node)
+    SceneValue(const std::string& where, std::string key, const toml::node& node)
         : where_(&where), key_(std::move(key)), node_(&node) {}
 
     [[noreturn]] void fail(std::string_view expected, std::string_view got) const {
@@ -40,16 +40,16 @@ public:
     [[nodiscard]] std::size_t size() const { return node_->as_table()->size(); }  ///< of a table
 
     /// A value of this table.
-    [[nodiscard]] Value operator[](std::string_view key) const {
+    [[nodiscard]] SceneValue operator[](std::string_view key) const {
         const toml::node* node = node_->as_table()->get(key);
-        Value value(*where_, key_.empty() ? std::string(key) : fmt::format("{}.{}", key_, key),
-                    node != nullptr ? *node : *node_);
+        SceneValue value(*where_, key_.empty() ? std::string(key) : fmt::format("{}.{}", key_, key),
+                         node != nullptr ? *node : *node_);
         value.missing_ = node == nullptr;
         return value;
     }
     /// A table of this table, [key].
-    [[nodiscard]] Value section(std::string_view key, const Keys& known) const {
-        const Value value = (*this)[key];
+    [[nodiscard]] SceneValue section(std::string_view key, const Keys& known) const {
+        const SceneValue value = (*this)[key];
         if (value.missing_ || !value.node_->is_table()) value.fail(fmt::format("a table [{}]", key));
         value.refuse_all_but(known);
         return value;
@@ -94,10 +94,10 @@ public:
     }
 
     /// The entries of a list that is not empty, or has `size` of them.
-    [[nodiscard]] std::vector<Value> list(std::string_view expected, std::size_t size = 0) const {
+    [[nodiscard]] std::vector<SceneValue> list(std::string_view expected, std::size_t size = 0) const {
         const auto* array = node_->as_array();
         if (array == nullptr || array->empty() || (size > 0 && array->size() != size)) fail(expected);
-        std::vector<Value> entries;
+        std::vector<SceneValue> entries;
         for (const toml::node& entry : *array) entries.emplace_back(*where_, key_, entry);
         return entries;
     }
@@ -131,8 +131,8 @@ private:
     bool missing_ = false;  ///< then the node is the table without it
 };
 
-Bar read_bar(const Value& root) {
-    const Value section = root.section("bar", {"length", "young_modulus", "density", "area", "gap"});
+Bar read_bar(const SceneValue& root) {
+    const SceneValue section = root.section("bar", {"length", "young_modulus", "density", "area", "gap"});
     Bar bar;
     bar.length = section["length"].positive();
     bar.young_modulus = section["young_modulus"].positive();
@@ -147,7 +147,7 @@ Bar read_bar(const Value& root) {
     return bar;
 }
 
-PeriodSelection read_period(const Value& period, const Value& contact, int cells) {
+PeriodSelection read_period(const SceneValue& period, const SceneValue& contact, int cells) {
     PeriodSelection selection{period.range(), std::nullopt};
     if (!contact.missing()) selection.contact = contact.range();
     if (selection.period[1] * cells > max_period_steps) {
@@ -157,12 +157,12 @@ PeriodSelection read_period(const Value& period, const Value& contact, int cells
     return selection;
 }
 
-ListSelection read_list(const Value& list) {
+ListSelection read_list(const SceneValue& list) {
     constexpr const char* rows = "rows [free steps, contact steps] of two positive integers";
     ListSelection selection;
-    for (const Value& row : list.list(rows)) {
+    for (const SceneValue& row : list.list(rows)) {
         std::vector<long> steps;
-        for (const Value& entry : row.list(rows, 2)) {
+        for (const SceneValue& entry : row.list(rows, 2)) {
             (void)entry.integer(1, std::numeric_limits<long>::max(), rows);
             steps.push_back(entry.integer(1, max_period_steps));
         }
@@ -175,11 +175,11 @@ ListSelection read_list(const Value& list) {
     return selection;
 }
 
-PatternSelection read_patterns(const Value& section, int cells) {
-    const Value mode = section["mode"];
-    const Value period = section["period"];
-    const Value list = section["list"];
-    const Value contact = section["contact"];
+PatternSelection read_patterns(const SceneValue& section, int cells) {
+    const SceneValue mode = section["mode"];
+    const SceneValue period = section["period"];
+    const SceneValue list = section["list"];
+    const SceneValue contact = section["contact"];
     const int count = !mode.missing() + !period.missing() + !list.missing();
     if (count != 1) {
         section.fail("exactly one of mode, period, list", count == 0 ? "none" : fmt::format("{} of them", count));
@@ -201,18 +201,18 @@ std::vector<double> spaced(double from, double to, long count, bool logarithmic)
     return levels;
 }
 
-std::vector<double> read_levels(const Value& section) {
+std::vector<double> read_levels(const SceneValue& section) {
     constexpr const char* either = "either list or from, to, count, spacing";
     if (section.size() == 0) section.fail(either, "neither");
-    if (const Value list = section["list"]; !list.missing()) {
+    if (const SceneValue list = section["list"]; !list.missing()) {
         if (section.size() != 1) section.fail(either, "both");
         std::vector<double> levels;
-        for (const Value& entry : list.list("a list of finite numbers > 0")) levels.push_back(entry.positive());
+        for (const SceneValue& entry : list.list("a list of finite numbers > 0")) levels.push_back(entry.positive());
         return levels;
     }
     const double from = section["from"].positive();
     const double to = section["to"].positive();
-    const Value count_value = section["count"];
+    const SceneValue count_value = section["count"];
     const long count = count_value.integer(1, max_levels);
     const bool linear = section["spacing"].is_second("log", "linear");
     if (from > to) section["to"].fail(fmt::format("a number >= levels.from = {}", from));
@@ -221,7 +221,7 @@ std::vector<double> read_levels(const Value& section) {
     return spaced(from, to, count, !linear);
 }
 
-Objective read_objective(const Value& value) {
+Objective read_objective(const SceneValue& value) {
     constexpr const char* names = "\"least-shock\", \"nearest\", \"least-force\", \"min-energy\" or \"max-energy\"";
     const std::optional<Objective> objective = objective_named(value.text(names));
     if (!objective) value.fail(names);
@@ -241,15 +241,16 @@ Scene parse_scene(std::string_view text, const std::string& where) {
         throw InputError(one_line(fmt::format("{}:{}: expected TOML, got a syntax error: {}", where,
                                               error.source().begin.line, error.description())));
     }
-    const Value root(where, "", table);
+    const SceneValue root(where, "", table);
     root.refuse_all_but({"title", "bar", "mesh", "patterns", "levels", "program"});
     Scene scene;
     scene.title = root["title"].text("one line of text");
     scene.bar = read_bar(root);
     scene.mesh.cells = static_cast<int>(root.section("mesh", {"cells"})["cells"].integer(1, max_cells));
-    const Value patterns = root.section("patterns", {"mode", "period", "contact", "list", "kinds"});
+    const SceneValue patterns = root.section("patterns", {"mode", "period", "contact", "list", "kinds"});
     scene.patterns = read_patterns(patterns, scene.mesh.cells);
-    if (const Value kinds = patterns["kinds"]; !kinds.missing()) scene.all_kinds = kinds.is_second("contact", "all");
+    if (const SceneValue kinds = patterns["kinds"]; !kinds.missing())
+        scene.all_kinds = kinds.is_second("contact", "all");
     scene.levels = read_levels(root.section("levels", {"list", "from", "to", "count", "spacing"}));
     scene.objective = read_objective(root.section("program", {"objective"})["objective"]);
     scene.text = text;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "sweep_charts.hpp"
-#include "orbit/motion_waves.hpp"
 
 namespace nsma {
 namespace {
@@ -72,7 +71,7 @@ Eigen::MatrixXd stress_picture(const Orbit& orbit) {
     const int cells = orbit.kernel.pattern.cells;
     const double period = orbit.kernel.pattern.period_ratio();
     const Eigen::VectorXd waves =
-        motion_waves(orbit) * (orbit.bar.displacement_unit() / orbit.mesh().time_step(orbit.bar));
+        orbit.kernel.waves(orbit.beta) * (orbit.bar.displacement_unit() / orbit.mesh().time_step(orbit.bar));
     const auto wave_at = [&](double when) {  // b_n [m/s]; in steps, may exceed the period
         return waves[static_cast<Eigen::Index>(std::floor(when)) % waves.size()];
     };

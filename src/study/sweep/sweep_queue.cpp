@@ -93,9 +93,9 @@ void SweepQueue::done(const WorkResult& result) {
     const auto found = open_.find(result.pattern);
     if (found == open_.end()) return;
     Open& open = found->second;
-    const auto index = [this](int place) { return index(place - first_place_); };
-    if (open.done.at(index(result.place))) return;
-    open.done[index(result.place)] = true;
+    const std::size_t place = index(result.place - first_place_);
+    if (open.done.at(place)) return;
+    open.done[place] = true;
     if (result.place > 0) ++done_;
     if (--open.left == 0) {
         unheld_.erase(result.pattern);
