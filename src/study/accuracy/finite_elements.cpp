@@ -72,13 +72,9 @@ Eigen::VectorXd FiniteElementBar::elastic_force(const Eigen::VectorXd& displacem
     return force;
 }
 
-double FiniteElementBar::penalty_force(double tip) const {
-    return -options_.penalty * stiffness_ * std::max(tip - gap_, 0.0);
-}
-
 Eigen::VectorXd FiniteElementBar::acceleration() const {
     Eigen::VectorXd force = elastic_force(displacement_);
-    force[force.size() - 1] += penalty_force(tip());
+    force[force.size() - 1] -= options_.penalty * stiffness_ * std::max(tip() - gap_, 0.0);
     return force.cwiseQuotient(mass_);
 }
 
@@ -93,10 +89,8 @@ void FiniteElementBar::factorise() {
         ratio_[i] = -factor / pivot_[i - 1];
         pivot_[i] += factor * ratio_[i];
     }
-    Eigen::VectorXd unit = Eigen::VectorXd::Zero(n);
-    unit[n - 1] = 1.0;
-    tip_response_ = unit;
-    tip_response_[n - 1] /= pivot_[n - 1];
+    tip_response_.resize(n);
+    tip_response_[n - 1] = 1.0 / pivot_[n - 1];
     for (Eigen::Index i = n - 2; i >= 0; --i) tip_response_[i] = factor * tip_response_[i + 1] / pivot_[i];
 }
 

@@ -47,7 +47,6 @@ public:
 
 private:
     [[nodiscard]] Eigen::VectorXd elastic_force(const Eigen::VectorXd& displacement) const;
-    [[nodiscard]] double penalty_force(double tip) const;
     [[nodiscard]] Eigen::VectorXd acceleration() const;
     void factorise();
     [[nodiscard]] Eigen::VectorXd solve(Eigen::VectorXd right) const;
