@@ -3,13 +3,10 @@
 #include <cstdio>
 #include <exception>
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include "command.hpp"
 #include "crew.hpp"
 
+#include "numerics/freed_memory.hpp"
 #include "nsma/report/input_error.hpp"
 
 namespace {
@@ -25,17 +22,6 @@ extern "C" void on_interrupt(int signal) {
     }
 }
 
-// Keeps memory that was freed: Ipopt's linear solver takes and gives back its own in every iteration, NLopt's L-BFGS in
-// every call, and fresh pages take longer than their work.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-    constexpr int kept = 64 << 20;  // bytes
-    mallopt(M_TRIM_THRESHOLD, kept);
-    mallopt(M_TOP_PAD, kept / 4);
-    mallopt(M_MMAP_THRESHOLD, kept / 2);  // a block of its own would go back when freed
-#endif
-}
-
 }  // namespace
 
 int main(int count, char** words) {
@@ -43,7 +29,7 @@ int main(int count, char** words) {
     std::signal(SIGTERM, on_interrupt);
     std::signal(SIGUSR1, on_interrupt);  // mpirun hands it on to its ranks; a SIGTERM it follows with SIGKILL
     std::signal(SIGPIPE, SIG_IGN);
-    keep_freed_memory();
+    nsma::keep_freed_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is then an error like a full disk
     try {
         const auto command = nsma::app::read_command_line(count, words);

@@ -16,6 +16,7 @@
 #include "nsma/wave/marcher.hpp"
 #include "wave/dense_wfem.hpp"
 #include "nsma/orbit/sieve.hpp"
+#include "numerics/freed_memory.hpp"
 #include "numerics/solver.hpp"
 #include "set/level_points.hpp"
 #include "nsma/search/orbit_solver.hpp"

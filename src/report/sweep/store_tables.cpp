@@ -38,49 +38,4 @@ const char* const timings_view_sql =
     " UNION ALL SELECT pattern, place, 'answer', NULL, seconds FROM answers"
     " UNION ALL SELECT pattern, place, solver, run, seconds FROM solves";
 
-StoreStatement::StoreStatement(SQLite::Database& database, const std::string& sql) : statement_(database, sql) {}
-
-void StoreStatement::select(std::initializer_list<std::int64_t> keys) {
-    statement_.reset();
-    int place = 0;
-    for (const std::int64_t key : keys) statement_.bind(++place, key);
-}
-
-void StoreStatement::insert(std::initializer_list<std::int64_t> keys, const Row& row) {
-    select(keys);
-    int place = static_cast<int>(keys.size());
-    for (const Value& value : row) {
-        ++place;
-        if (const auto* truth = std::get_if<bool>(&value)) {
-            statement_.bind(place, *truth ? 1 : 0);
-        } else if (const auto* whole = std::get_if<std::int64_t>(&value)) {
-            statement_.bind(place, *whole);
-        } else if (const auto* real = std::get_if<double>(&value)) {
-            statement_.bind(place, *real);
-        } else if (const auto* text = std::get_if<std::string>(&value)) {
-            statement_.bind(place, *text);
-        } else {
-            statement_.bind(place);
-        }
-    }
-    statement_.exec();
-}
-
-Row StoreStatement::row(int from) {
-    Row row;
-    for (int i = from; i < statement_.getColumnCount(); ++i) {
-        const SQLite::Column column = statement_.getColumn(i);
-        if (column.isInteger()) {
-            row.emplace_back(column.getInt64());
-        } else if (column.isFloat()) {
-            row.emplace_back(column.getDouble());
-        } else if (column.isText()) {
-            row.emplace_back(column.getString());
-        } else {
-            row.emplace_back();
-        }
-    }
-    return row;
-}
-
 }  // namespace nsma

@@ -5,10 +5,10 @@
 #include <optional>
 #include <thread>
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "database.hpp"
 #include "store_tables.hpp"
 #include "sweep_folder.hpp"
 #include "orbit/fnv_hash.hpp"
@@ -36,9 +36,9 @@ struct SweepStore::Implementation {
     fs::path folder;
     fs::path file;
     Scene scene;
-    std::unique_ptr<SQLite::Database> database;
+    std::unique_ptr<Database> database;
     struct Inserts {
-        StoreStatement pattern, answer, run, orbit;
+        DatabaseStatement pattern, answer, run, orbit;
     };
     std::optional<Inserts> inserts;
 
@@ -47,9 +47,9 @@ struct SweepStore::Implementation {
     auto guarded(const char* doing, Call call) const {
         try {
             return call();
-        } catch (const SQLite::Exception& error) {
-            if (is_locked(error)) fail(file, "is in use by another process");
-            fail(file, fmt::format("cannot be {}: {}", doing, error.getErrorStr()));
+        } catch (const DatabaseError& error) {
+            if (error.locked()) fail(file, "is in use by another process");
+            fail(file, fmt::format("cannot be {}: {}", doing, error.what()));
         } catch (const std::invalid_argument& error) {
             fail(file, fmt::format("cannot be {}: {}", doing, error.what()));
         } catch (const nlohmann::json::exception& error) {
@@ -66,76 +66,58 @@ struct SweepStore::Implementation {
             constexpr std::chrono::milliseconds pause{50};
             for (int i = 1;; ++i) {
                 try {
-                    return connect(write);
-                } catch (const SQLite::Exception& error) {
-                    database.reset();
-                    if (i == tries || !is_locked(error)) throw;
+                    database = std::make_unique<Database>(file, write);
+                    return;
+                } catch (const DatabaseError& error) {
+                    if (i == tries || !error.locked()) throw;
                     std::this_thread::sleep_for(pause);
                 }
             }
         });
     }
 
-    void connect(bool write) {
-        const int flags = write ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE : SQLite::OPEN_READONLY;
-        database = std::make_unique<SQLite::Database>(file.string(), flags);
-        if (!write) return;
-        // One writer, no shared memory: also safe on a network file system.
-        database->exec("PRAGMA locking_mode=EXCLUSIVE");
-        database->exec("PRAGMA journal_mode=WAL");
-        database->exec("PRAGMA synchronous=NORMAL");
-        database->exec("BEGIN EXCLUSIVE");
-        database->exec("COMMIT");
-    }
-
-    static bool is_locked(const SQLite::Exception& error) {
-        return error.getErrorCode() == 5 || error.getErrorCode() == 6;  // SQLITE_BUSY, SQLITE_LOCKED
-    }
-
     [[nodiscard]] std::string info(const char* key) const {
         return guarded("read", [&] {
-            SQLite::Statement query(*database, "SELECT value FROM sweep WHERE key = ?");
-            query.bind(1, key);
-            return query.executeStep() ? query.getColumn(0).getString() : std::string();
+            DatabaseStatement query(*database, "SELECT value FROM sweep WHERE key = ?");
+            query.select({}, {key});
+            return query.step() ? query.text(0) : std::string();
         });
     }
 
     void set_info(const char* key, const std::string& value) {
         guarded("written", [&] {
-            SQLite::Statement set(*database, "INSERT OR REPLACE INTO sweep (key, value) VALUES (?, ?)");
-            set.bind(1, key);
-            set.bind(2, value);
-            set.exec();
+            DatabaseStatement(*database, "INSERT OR REPLACE INTO sweep (key, value) VALUES (?, ?)")
+                .insert({}, {key, value});
         });
     }
 
     [[nodiscard]] bool started() const {
-        return guarded("read", [&] { return database->tableExists("sweep"); });
+        return guarded("read", [&] { return database->has_table("sweep"); });
     }
 
     void begin_anew(const StoreVersions& versions) {
         guarded("written", [&] {
-            SQLite::Transaction transaction(*database);
-            database->exec("DROP VIEW IF EXISTS timings");
-            database->exec("DROP TABLE IF EXISTS sweep");
-            for (const StoreTable& table : store_tables()) {
-                database->exec(fmt::format("DROP TABLE IF EXISTS {}", table.name));
-            }
-            database->exec("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID");
-            for (const StoreTable& table : store_tables()) database->exec(table.create_sql());
-            database->exec(timings_view_sql);
-            for (const auto& [key, value] : {std::pair<const char*, std::string>{"format", format},
-                                             {"scene", scene.text},
-                                             {"scene_hash", hash_of(scene.text)},
-                                             {"title", scene.title},
-                                             {"software", versions.software},
-                                             {"options", versions.options},
-                                             {"kinds", scene.all_kinds ? "all" : "contact"},
-                                             {"complete", "0"},
-                                             {"seconds", "0"}}) {
-                set_info(key, value);
-            }
-            transaction.commit();
+            database->transaction([&] {
+                database->execute("DROP VIEW IF EXISTS timings");
+                database->execute("DROP TABLE IF EXISTS sweep");
+                for (const StoreTable& table : store_tables()) {
+                    database->execute(fmt::format("DROP TABLE IF EXISTS {}", table.name));
+                }
+                database->execute("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID");
+                for (const StoreTable& table : store_tables()) database->execute(table.create_sql());
+                database->execute(timings_view_sql);
+                for (const auto& [key, value] : {std::pair<const char*, std::string>{"format", format},
+                                                 {"scene", scene.text},
+                                                 {"scene_hash", hash_of(scene.text)},
+                                                 {"title", scene.title},
+                                                 {"software", versions.software},
+                                                 {"options", versions.options},
+                                                 {"kinds", scene.all_kinds ? "all" : "contact"},
+                                                 {"complete", "0"},
+                                                 {"seconds", "0"}}) {
+                    set_info(key, value);
+                }
+            });
         });
     }
 
@@ -228,21 +210,21 @@ void SweepStore::put(const std::vector<WorkResult>& results) {
     auto& self = *implementation_;
     self.guarded("written", [&] {
         // Without its commit it is rolled back; what was committed before stays valid.
-        SQLite::Transaction transaction(*self.database);
-        for (const WorkResult& result : results) self.put(rows_of(result));
-        transaction.commit();
+        self.database->transaction([&] {
+            for (const WorkResult& result : results) self.put(rows_of(result));
+        });
     });
 }
 
 void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
     const auto& self = *implementation_;
-    SQLite::Database& database = *self.database;
+    Database& database = *self.database;
     const Bar& bar = self.scene.bar;
     self.guarded("read", [&] {
-        StoreStatement patterns(database, "SELECT * FROM patterns ORDER BY number");
-        StoreStatement answers(database, "SELECT * FROM answers WHERE pattern = ? ORDER BY place");
-        StoreStatement runs(database, "SELECT * FROM solves WHERE pattern = ? AND place = ? ORDER BY run");
-        StoreStatement orbit(database, "SELECT * FROM orbits WHERE pattern = ? AND place = ?");
+        DatabaseStatement patterns(database, "SELECT * FROM patterns ORDER BY number");
+        DatabaseStatement answers(database, "SELECT * FROM answers WHERE pattern = ? ORDER BY place");
+        DatabaseStatement runs(database, "SELECT * FROM solves WHERE pattern = ? AND place = ? ORDER BY run");
+        DatabaseStatement orbit(database, "SELECT * FROM orbits WHERE pattern = ? AND place = ?");
         while (patterns.step()) {
             const long pattern = patterns.integer(0);
             visit(result_of({pattern, -1, patterns.row(1), {}, {}}, bar));
@@ -266,8 +248,8 @@ void SweepStore::finish() {
     self.inserts.reset();
     self.guarded("written", [&] {
         // Everything into the one file, which is then whole by itself.
-        self.database->exec("PRAGMA synchronous=FULL");
-        self.database->exec("PRAGMA journal_mode=DELETE");
+        self.database->execute("PRAGMA synchronous=FULL");
+        self.database->execute("PRAGMA journal_mode=DELETE");
     });
     self.database.reset();
     std::error_code code;

@@ -93,9 +93,9 @@ void SweepQueue::done(const WorkResult& result) {
     const auto found = open_.find(result.pattern);
     if (found == open_.end()) return;
     Open& open = found->second;
-    const std::size_t place = index(result.place - first_place_);
-    if (open.done.at(place)) return;
-    open.done[place] = true;
+    const auto slot = [this](int place) { return index(place - first_place_); };
+    if (open.done.at(slot(result.place))) return;
+    open.done[slot(result.place)] = true;
     if (result.place > 0) ++done_;
     if (--open.left == 0) {
         unheld_.erase(result.pattern);
@@ -105,7 +105,7 @@ void SweepQueue::done(const WorkResult& result) {
     const int number = strand_of(open, result.place);
     Strand& strand = open.strands[index(number)];
     const bool handed = !open.ready.contains(number) && strand.next != result.place;
-    while (strand.next < strand.end && open.done[index(strand.next)]) ++strand.next;
+    while (strand.next < strand.end && open.done[slot(strand.next)]) ++strand.next;
     if (strand.next == strand.end) {
         open.ready.erase(number);
         strand.before = {};
