@@ -19,23 +19,6 @@ namespace {
 enum Tag { tag_unit = 1, tag_result, tag_dismissed, tag_goodbye };
 constexpr int child_worker = 0;  // the child of rank 0; rank r is worker r
 
-// The wait between two looks for a message. It grows while none comes: where results come quickly they are answered at
-// once, where solves are long the processor is left to them. At most half a millisecond is lost, at a look's cost of
-// some ten microseconds.
-class Pause {
-public:
-    [[nodiscard]] std::chrono::microseconds next() {
-        const auto now = length_;
-        length_ = std::min(2 * length_, longest);
-        return now;
-    }
-    void over() { length_ = shortest; }
-
-private:
-    static constexpr std::chrono::microseconds shortest{20}, longest{500};
-    std::chrono::microseconds length_ = shortest;
-};
-
 // A number of the environment that a launcher of MPI programs set, or -1.
 int launched(const char* open_mpi, const char* slurm) {
     for (const char* key : {open_mpi, slurm}) {
@@ -74,7 +57,7 @@ bool read_all(int file, void* data, std::size_t size) {
 }
 
 bool write_message(int file, const std::string& bytes) {
-    const auto size = static_cast<std::uint64_t>(bytes.size());
+    const std::uint64_t size = bytes.size();
     return write_all(file, &size, sizeof size) && write_all(file, bytes.data(), bytes.size());
 }
 
@@ -111,6 +94,23 @@ std::optional<Received> receive() {
 }  // namespace
 
 struct Crew::Implementation {
+    // The wait between two looks for a message. It grows while none comes: where results come quickly they are answered
+    // at once, where solves are long the processor is left to them. At most half a millisecond is lost, at a look's
+    // cost of some ten microseconds.
+    class Pause {
+    public:
+        [[nodiscard]] std::chrono::microseconds next() {
+            const auto now = length_;
+            length_ = std::min(2 * length_, longest);
+            return now;
+        }
+        void over() { length_ = shortest; }
+
+    private:
+        static constexpr std::chrono::microseconds shortest{20}, longest{500};
+        std::chrono::microseconds length_ = shortest;
+    };
+
     bool mpi = false;
     int rank = 0;
     int ranks = 1;

@@ -16,7 +16,7 @@ Json json_of(bool value) { return value; }
 Json json_of(std::int64_t value) { return value; }
 Json json_of(double value) { return value + 0.0; }  // no negative zero
 Json json_of(const std::string& text) { return one_line(text); }
-Json json_of(const Value& value) {
+Json json_of(const FieldValue& value) {
     return std::visit([](const auto& held) { return json_of(held); }, value);
 }
 

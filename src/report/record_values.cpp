@@ -5,19 +5,19 @@
 namespace nsma {
 namespace {
 
-Value value_of(const std::optional<double>& value) { return value ? Value(*value) : Value(); }
+FieldValue value_of(const std::optional<double>& value) { return value ? FieldValue(*value) : FieldValue(); }
 
-Value text_value(const std::string& text) { return text.empty() ? Value() : Value(text); }
+FieldValue text_value(const std::string& text) { return text.empty() ? FieldValue() : FieldValue(text); }
 
 void add_energy(NamedValues& values, const Bar& bar, const char* ratio, const char* joule,
                 const std::optional<double>& energy) {
-    values[ratio] = bar.gap_sign() != 0 ? value_of(energy) : Value();
-    values[joule] = energy ? Value(*energy * bar.energy_unit()) : Value();
+    values[ratio] = bar.gap_sign() != 0 ? value_of(energy) : FieldValue();
+    values[joule] = energy ? FieldValue(*energy * bar.energy_unit()) : FieldValue();
 }
 
 void add_run(NamedValues& values, const char* status, const char* objective, const SolverRun* run) {
-    values[status] = run != nullptr ? Value(run->status) : Value();
-    values[objective] = run != nullptr && run->usable ? Value(run->objective) : Value();
+    values[status] = run != nullptr ? FieldValue(run->status) : FieldValue();
+    values[objective] = run != nullptr && run->usable ? FieldValue(run->objective) : FieldValue();
 }
 
 template <class Record>

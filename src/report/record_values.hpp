@@ -9,7 +9,7 @@ namespace nsma {
 
 /// What tables and JSON show of a record: its fields and what follows from them for a bar, by the names and in the
 /// units of data/README.md. Energy ratios E/E_g have no value for a closed gap, fractions none without a proof.
-using NamedValues = std::map<std::string_view, Value>;
+using NamedValues = std::map<std::string_view, FieldValue>;
 [[nodiscard]] NamedValues named_values(const Bar& bar, const PatternRecord& record);
 [[nodiscard]] NamedValues named_values(const Bar& bar, const OrbitAnswer& answer);
 

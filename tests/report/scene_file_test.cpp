@@ -110,7 +110,7 @@ const BadScene bad_scenes[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(SceneFile, BadSceneTest, testing::ValuesIn(bad_scenes),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& chosen) { return std::string(chosen.param.name); });
 
 TEST(SceneFile, ReadsTheSample) {
     const Scene scene = parse_scene(sample::scene_text, "sample");

@@ -9,8 +9,8 @@
 
 #include "../study/run_sweep.hpp"
 #include "sample.hpp"
-#include "nsma/report/scene_file.hpp"
 #include "study/sweep/sweep_queue.hpp"
+#include "nsma/report/scene_file.hpp"
 
 namespace nsma {
 namespace {
@@ -209,8 +209,7 @@ TEST_F(SweepStoreTest, NoRoomLeftIsOneLineAndTheStoreStaysValid) {
     {
         SweepStore store(path / "out", scene, versions, Mode::fresh);
         (void)work(store, 3);
-        const SizeLimit limit(
-            static_cast<rlim_t>(std::filesystem::file_size(path / "out" / "results.sqlite.part-wal")));
+        const SizeLimit limit(std::filesystem::file_size(path / "out" / "results.sqlite.part-wal"));
         const std::string message = error_of([&] { (void)work(store); });
         EXPECT_THAT(message, HasSubstr("results.sqlite.part: cannot be written: "));
         EXPECT_EQ(message.find('\n'), std::string::npos);

@@ -11,7 +11,7 @@ TEST(RecordFields, NamesAndValuesAreAsMany) {
 }
 
 TEST(RecordFields, RowsThatDoNotFitAreRefused) {
-    Row pattern = row_of(PatternRecord{});
+    RecordRow pattern = row_of(PatternRecord{});
     pattern.pop_back();
     EXPECT_THROW((void)record_of<PatternRecord>(pattern), std::invalid_argument);
     ResultRows rows = rows_of({0, 0, std::nullopt, OrbitAnswer{}});
@@ -21,12 +21,12 @@ TEST(RecordFields, RowsThatDoNotFitAreRefused) {
 
 TEST(RecordFields, ValuesOfAnotherKindAreRefused) {
     for (std::size_t i = 0; i < fields_of<PatternRecord>().size(); ++i) {
-        Row row = row_of(PatternRecord{});
+        RecordRow row = row_of(PatternRecord{});
         // No field is of the kind that its opposite has.
-        row[i] = std::holds_alternative<std::string>(row[i]) ? Value(std::int64_t{1}) : Value("splendid");
+        row[i] = std::holds_alternative<std::string>(row[i]) ? FieldValue(std::int64_t{1}) : FieldValue("splendid");
         EXPECT_THROW((void)record_of<PatternRecord>(row), std::invalid_argument) << fields_of<PatternRecord>()[i].name;
     }
-    Row row = row_of(PatternRecord{});
+    RecordRow row = row_of(PatternRecord{});
     row[0] = std::int64_t{1} << 40;
     EXPECT_THROW((void)record_of<PatternRecord>(row), std::invalid_argument);
 }

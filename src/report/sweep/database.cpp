@@ -64,13 +64,13 @@ DatabaseStatement::DatabaseStatement(Database& database, const std::string& sql)
 DatabaseStatement::~DatabaseStatement() = default;
 DatabaseStatement::DatabaseStatement(DatabaseStatement&&) noexcept = default;
 
-void DatabaseStatement::select(std::initializer_list<std::int64_t> keys, const Row& row) {
+void DatabaseStatement::select(std::initializer_list<std::int64_t> keys, const RecordRow& row) {
     translated([&] {
         SQLite::Statement& statement = implementation_->statement;
         statement.reset();
         int place = 0;
         for (const std::int64_t key : keys) statement.bind(++place, key);
-        for (const Value& value : row) {
+        for (const FieldValue& value : row) {
             ++place;
             if (const auto* truth = std::get_if<bool>(&value)) {
                 statement.bind(place, *truth ? 1 : 0);
@@ -87,7 +87,7 @@ void DatabaseStatement::select(std::initializer_list<std::int64_t> keys, const R
     });
 }
 
-void DatabaseStatement::insert(std::initializer_list<std::int64_t> keys, const Row& row) {
+void DatabaseStatement::insert(std::initializer_list<std::int64_t> keys, const RecordRow& row) {
     select(keys, row);
     translated([&] { implementation_->statement.exec(); });
 }
@@ -104,9 +104,9 @@ std::string DatabaseStatement::text(int column) {
     return translated([&] { return implementation_->statement.getColumn(column).getString(); });
 }
 
-Row DatabaseStatement::row(int from) {
+RecordRow DatabaseStatement::row(int from) {
     return translated([&] {
-        Row row;
+        RecordRow row;
         for (int i = from; i < implementation_->statement.getColumnCount(); ++i) {
             const SQLite::Column column = implementation_->statement.getColumn(i);
             if (column.isInteger()) {

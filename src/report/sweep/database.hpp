@@ -48,13 +48,13 @@ public:
     DatabaseStatement(DatabaseStatement&&) noexcept;
 
     /// Runs with these parameters, keys first.
-    void insert(std::initializer_list<std::int64_t> keys, const Row& row);
+    void insert(std::initializer_list<std::int64_t> keys, const RecordRow& row);
     /// Asks for the rows of these parameters; step() moves to the next one, false: there is none.
-    void select(std::initializer_list<std::int64_t> keys, const Row& row = {});
+    void select(std::initializer_list<std::int64_t> keys, const RecordRow& row = {});
     bool step();
     [[nodiscard]] long integer(int column);
     [[nodiscard]] std::string text(int column);
-    [[nodiscard]] Row row(int from);  ///< the values from a column on
+    [[nodiscard]] RecordRow row(int from);  ///< the values from a column on
 
 private:
     struct Implementation;

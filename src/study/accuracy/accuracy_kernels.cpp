@@ -6,8 +6,8 @@
 namespace nsma {
 namespace {
 
-constexpr KernelMethod methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd,
-                                    KernelMethod::rank_revealing_qr, KernelMethod::matrix_powers};
+constexpr KernelMethod kernel_methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd,
+                                           KernelMethod::rank_revealing_qr, KernelMethod::matrix_powers};
 constexpr double slow_kernel = 0.5;  // seconds; one run of such work is enough
 
 void study_tolerances(AccuracyRun& run, const Pattern& pattern) {
@@ -33,7 +33,7 @@ void study_kernels(AccuracyRun& run) {
     for (const int size : run.sizes.kernels) {
         const Pattern pattern = accuracy_pattern(size, bar.gap_sign());
         const Eigen::MatrixXd exact = kernel_space(KernelMethod::exact_cycles, bar, pattern);
-        for (const KernelMethod method : methods) {
+        for (const KernelMethod method : kernel_methods) {
             if (!run.go_on()) return;
             Eigen::MatrixXd basis;
             const auto find = [&] { basis = kernel_space(method, bar, pattern); };

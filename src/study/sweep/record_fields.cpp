@@ -25,19 +25,19 @@ constexpr bool is_optional = false;
 template <class Type>
 constexpr bool is_optional<std::optional<Type>> = true;
 
-Value value_of(bool value) { return value; }
-Value value_of(int value) { return std::int64_t{value}; }
-Value value_of(double value) { return std::isnan(value) ? Value() : Value(value); }
-Value value_of(const std::string& value) { return value; }
+FieldValue value_of(bool value) { return value; }
+FieldValue value_of(int value) { return std::int64_t{value}; }
+FieldValue value_of(double value) { return std::isnan(value) ? FieldValue() : FieldValue(value); }
+FieldValue value_of(const std::string& value) { return value; }
 template <class Enum>
-requires std::is_enum_v<Enum> Value value_of(Enum value) { return std::string(name(value)); }
+requires std::is_enum_v<Enum> FieldValue value_of(Enum value) { return std::string(name(value)); }
 template <class Type>
-Value value_of(const std::optional<Type>& value) {
-    return value ? value_of(*value) : Value();
+FieldValue value_of(const std::optional<Type>& value) {
+    return value ? value_of(*value) : FieldValue();
 }
 
 template <class Type>
-bool read(const Value& value, Type& field) {
+bool read(const FieldValue& value, Type& field) {
     const auto* whole = std::get_if<std::int64_t>(&value);
     if constexpr (is_optional<Type>) {
         field.reset();
@@ -100,9 +100,9 @@ template <class Record, auto... Path>
 RecordField<Record> member(const char* name) {
     const auto get = [](const Record& record) {
         const auto* found = find<Path...>(record);
-        return found == nullptr ? Value() : value_of(*found);
+        return found == nullptr ? FieldValue() : value_of(*found);
     };
-    const auto set = [](Record& record, const Value& value) {
+    const auto set = [](Record& record, const FieldValue& value) {
         const bool absent = std::holds_alternative<std::monostate>(value) && find<Path...>(record) == nullptr;
         return absent || read(value, make<Path...>(record));
     };
@@ -214,7 +214,7 @@ WorkResult result_of(const ResultRows& rows, const Bar& bar) {
         return result;
     }
     OrbitAnswer& answer = result.answer.emplace(record_of<OrbitAnswer>(rows.record));
-    for (const Row& run : rows.runs) answer.solvers.push_back(record_of<SolverRun>(run));
+    for (const RecordRow& run : rows.runs) answer.solvers.push_back(record_of<SolverRun>(run));
     if (!rows.beta.empty()) {
         answer.orbit = make_orbit(
             bar, exact_kernel(answer.pattern),

@@ -11,15 +11,15 @@
 namespace nsma {
 
 /// No value, truth value, integer, floating point (exactly the double) or text. NaN is no value.
-using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
-using Row = std::vector<Value>;
+using FieldValue = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
+using RecordRow = std::vector<FieldValue>;
 
 /// One field of a record: its name, and its value out of a record and into one.
 template <class Record>
 struct RecordField {
     const char* name;
-    Value (*get)(const Record&);
-    bool (*set)(Record&, const Value&);  ///< false: a value of another kind
+    FieldValue (*get)(const Record&);
+    bool (*set)(Record&, const FieldValue&);  ///< false: a value of another kind
 };
 
 /// All fields of a record, in order, units as in the record: what the store, the messages between processes, the
@@ -34,15 +34,15 @@ template <>
 const std::vector<RecordField<SolverRun>>& fields_of();
 
 template <class Record>
-[[nodiscard]] Row row_of(const Record& record) {
-    Row row;
+[[nodiscard]] RecordRow row_of(const Record& record) {
+    RecordRow row;
     for (const auto& field : fields_of<Record>()) row.push_back(field.get(record));
     return row;
 }
 
 /// The inverse. Throws std::invalid_argument on a row that does not fit.
 template <class Record>
-[[nodiscard]] Record record_of(const Row& row) {
+[[nodiscard]] Record record_of(const RecordRow& row) {
     const auto& fields = fields_of<Record>();
     if (row.size() != fields.size()) {
         throw std::invalid_argument("row: expected " + std::to_string(fields.size()) + " values, got " +
@@ -61,8 +61,8 @@ template <class Record>
 struct ResultRows {
     long pattern = 0;
     int place = -1;
-    Row record;  ///< of the pattern (place -1) or of the answer
-    std::vector<Row> runs;
+    RecordRow record;  ///< of the pattern (place -1) or of the answer
+    std::vector<RecordRow> runs;
     std::vector<double> beta;  ///< nondimensional; empty without an orbit
 };
 [[nodiscard]] ResultRows rows_of(const WorkResult& result);

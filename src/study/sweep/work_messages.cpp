@@ -8,11 +8,11 @@
 #include "record_fields.hpp"
 
 template <>
-struct nlohmann::adl_serializer<nsma::Value> {
-    static void to_json(json& target, const nsma::Value& value) {
+struct nlohmann::adl_serializer<nsma::FieldValue> {
+    static void to_json(json& target, const nsma::FieldValue& value) {
         std::visit([&target](const auto& held) { assign(target, held); }, value);
     }
-    static void from_json(const json& source, nsma::Value& value) {
+    static void from_json(const json& source, nsma::FieldValue& value) {
         switch (source.type()) {
             case json::value_t::null: value = {}; break;
             case json::value_t::boolean: value = source.get<bool>(); break;
