@@ -187,8 +187,8 @@ private:
         check_greatest(terms_.factor / length);
     }
 
-    Dense check_ray() const {
-        const Dense ray = terms_.dense(certificate_.ray, "ray");
+    [[nodiscard]] Dense check_ray() const {
+        Dense ray = terms_.dense(certificate_.ray, "ray");
         if (square(ray) == 0) invalid("ray: expected a nonzero direction");
         check_cone(ray, "ray");
         if (contact_value(ray) != 0) invalid("ray: COND2 fails");

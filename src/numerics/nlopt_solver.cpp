@@ -96,7 +96,7 @@ void equalities(unsigned count, double* result, unsigned n, const double* x, dou
         if (program.sphere_variables > 0) {
             result[count - 1] = point.head(program.sphere_variables).squaredNorm() - 1.0;
             if (gradient != nullptr) {
-                Eigen::Map<Eigen::VectorXd> row(gradient + (count - 1) * n, n);
+                Eigen::Map<Eigen::VectorXd> row(gradient + std::size_t{count - 1} * n, n);
                 row.setZero();
                 row.head(program.sphere_variables) = 2.0 * point.head(program.sphere_variables);
             }

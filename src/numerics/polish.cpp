@@ -97,8 +97,9 @@ private:
     bool step_along(const Eigen::VectorXd& direction, const std::vector<Row>& working, bool newton) {
         if (gradient_.dot(direction) >= 0) return false;
         std::vector<Row> blocked = working;
-        double step = boundary_.step_to_boundary(x_, direction, 1e-14 * direction.norm(), blocked);
-        for (int halving = 0; halving < halvings_limit; ++halving, step *= 0.5) {
+        const double longest = boundary_.step_to_boundary(x_, direction, 1e-14 * direction.norm(), blocked);
+        for (int halving = 0; halving < halvings_limit; ++halving) {
+            const double step = std::ldexp(longest, -halving);
             const auto x = moved_onto(halving == 0 ? blocked : working, x_ + step * direction);
             if (!x || !is_progress(*x, newton && halving == 0)) continue;
             move_to(*x);
@@ -163,9 +164,9 @@ private:
         for (const double side : {0.5, -0.5}) {  // half the radius of the sphere
             const Eigen::VectorXd direction = side * (span * modes.col(0));
             std::vector<Row> blocking;
-            double step = boundary_.step_to_boundary(x_, direction, 1e-14, blocking);
-            for (int halving = 0; halving < escape_halvings; ++halving, step *= 0.5) {
-                const auto x = moved_onto(active_, x_ + step * direction);
+            const double longest = boundary_.step_to_boundary(x_, direction, 1e-14, blocking);
+            for (int halving = 0; halving < escape_halvings; ++halving) {
+                const auto x = moved_onto(active_, x_ + std::ldexp(longest, -halving) * direction);
                 if (!x || program_.objective(*x) >= objective_ - escape_decrease * (1.0 + std::abs(objective_)))
                     continue;
                 move_to(*x);
@@ -178,7 +179,8 @@ private:
     // Where the sphere passes through a vertex, descent along its edges only creeps towards it: rows that are almost
     // active are tried as active.
     void settle_on_nearly_active_rows() {
-        for (double near = 1e2 * activity; near <= nearly_active; near *= 10) {
+        double near = 1e1 * activity;
+        while ((near *= 10) <= nearly_active) {
             if (order_.multipliers.residual <= stationarity) return;
             const auto x = moved_onto(boundary_.active(x_, near), x_);
             if (!x) continue;

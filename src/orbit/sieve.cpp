@@ -59,7 +59,7 @@ Sieve::Place Sieve::walk(int free_places) {
         if (place >= places_) place -= places_;
     }
     // The sign that COND3 gives the amplitudes: that of any contact place.
-    const int side = sign_[index(free_places)];
+    const std::int8_t side = sign_[index(free_places)];
     const int window = 2 * cells_ / classes_;
     const auto sum_to = [this](int end) {
         return std::accumulate(sign_.begin(), sign_.begin() + end, std::int64_t{0});

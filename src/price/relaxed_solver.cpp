@@ -68,7 +68,7 @@ Eigen::VectorXd sharpened(const Program& program, const Eigen::VectorXd& x) {
     const Boundary boundary(program);
     const double size = 1.0 + x.cwiseAbs().maxCoeff();
     for (const double tolerance : {activity, 1e-2 * activity}) {
-        const Eigen::VectorXd moved = boundary.project(boundary.active(x, tolerance * size), x);
+        Eigen::VectorXd moved = boundary.project(boundary.active(x, tolerance * size), x);
         if (program.violation(moved) <= PolishOptions{}.feasibility * size) return moved;
     }
     return x;
@@ -92,7 +92,7 @@ Eigen::VectorXd recession(const RelaxedProgram& form) {
     Program cone = form.program;
     cone.inequality_values.setZero();
     cone.equality_values.setZero();
-    const Eigen::VectorXd direction = other_than_rest(cone);
+    Eigen::VectorXd direction = other_than_rest(cone);
     if (direction.size() == 0) return direction;
     // Active rows of the box are no part of the cone: only the cone's are sharpened.
     return form.beta(sharpened(cone, direction)).normalized();

@@ -98,7 +98,7 @@ ScaledUnit scaled_unit(double largest, const std::string& unit) {
     const int step = std::clamp(static_cast<int>(std::floor(std::log10(largest) / 3.0 + 1e-9)), -4, 4);
     // Between 0.1 and 1 the plain unit reads better than thousandths of it.
     const int kept = step == -1 && largest >= 0.1 ? 0 : step;
-    return {std::pow(10.0, -3 * kept), prefixes.at(static_cast<std::size_t>(kept + 4)) + unit};
+    return {std::pow(10.0, -3 * kept), prefixes.begin()[kept + 4] + unit};
 }
 
 double round_below(double limit) {

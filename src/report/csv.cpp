@@ -9,7 +9,7 @@
 namespace nsma {
 
 std::string csv_text(std::string_view text) {
-    const std::string line = one_line(std::string(text));
+    std::string line = one_line(std::string(text));
     if (line.find_first_of(",\"#") == std::string::npos) return line;
     std::string quoted = "\"";
     for (const char letter : line) {

@@ -49,7 +49,7 @@ public:
     }
     /// A table of this table, [key].
     [[nodiscard]] SceneValue section(std::string_view key, const Keys& known) const {
-        const SceneValue value = (*this)[key];
+        SceneValue value = (*this)[key];
         if (value.missing_ || !value.node_->is_table()) value.fail(fmt::format("a table [{}]", key));
         value.refuse_all_but(known);
         return value;

@@ -211,12 +211,13 @@ VectorXd least_peak_point(const SimplexLevel& level) {
 double shock_closure(const Kernel& kernel, const Reduction& reduction) {
     if (reduction.variables() != kernel.classes) return 0;
     const int period = kernel.pattern.period_steps();
-    int sum =
-        0;  // over the rounds, of the product of the last wave of one and the first of the next; all classes flip alike
+    // Over the rounds, of the product of the last wave of one and the first of the next; all classes flip alike.
+    int sum = 0;
     for (int n = kernel.classes - 1; n < period; n += kernel.classes) {
         sum += kernel.sign[static_cast<std::size_t>(n)] * kernel.sign[static_cast<std::size_t>((n + 1) % period)];
     }
-    return static_cast<double>(sum) / (period / kernel.classes);
+    const int rounds = period / kernel.classes;
+    return static_cast<double>(sum) / rounds;
 }
 
 VectorXd simplex_optimum(const Kernel& kernel, const AdmissibleSet& set, Objective objective, double energy,

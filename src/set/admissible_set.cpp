@@ -17,8 +17,9 @@ Eigen::VectorXd steps_of(const std::vector<char>& high) {
     Eigen::VectorXd steps(static_cast<Eigen::Index>(high.size()) + 1);
     int before = 0;
     for (std::size_t k = 0; k < high.size(); ++k) {
-        steps[static_cast<Eigen::Index>(k)] = high[k] - before;
-        before = high[k];
+        const int now = high[k] != 0 ? 1 : 0;
+        steps[static_cast<Eigen::Index>(k)] = now - before;
+        before = now;
     }
     steps[steps.size() - 1] = 1 - before;
     return steps;

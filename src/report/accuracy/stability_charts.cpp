@@ -147,9 +147,10 @@ Chart level_chart(const Records& records, const Quantity& quantity) {
         }
         const double left = k % 2 == 0 ? 0.10 : 0.555;
         const double height = 0.82 / rows;
-        const double top = 0.92 - k / 2 * height;
+        const int row = k / 2;
+        const double top = 0.92 - row * height;
         add_panel(chart, {left, left + 0.435, top - height + 0.045, top}, map,
-                  {.rows = k % 2 == 0, .columns = k / 2 == rows - 1});
+                  {.rows = k % 2 == 0, .columns = row == rows - 1});
     }
     return chart;
 }

@@ -18,13 +18,14 @@ auto translated(const Call& call) {
 }  // namespace
 
 struct Database::Implementation {
+    Implementation(const std::filesystem::path& file, int flags) : database(file.string(), flags) {}
     SQLite::Database database;
 };
 
 Database::Database(const std::filesystem::path& file, bool write) {
     translated([&] {
         const int flags = write ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE : SQLite::OPEN_READONLY;
-        implementation_ = std::make_unique<Implementation>(SQLite::Database(file.string(), flags));
+        implementation_ = std::make_unique<Implementation>(file, flags);
     });
     if (!write) return;
     // One writer, no shared memory: also safe on a network file system.
@@ -53,13 +54,13 @@ void Database::transaction(const std::function<void()>& work) {
 }
 
 struct DatabaseStatement::Implementation {
+    Implementation(const SQLite::Database& database, const std::string& sql) : statement(database, sql) {}
     SQLite::Statement statement;
 };
 
 DatabaseStatement::DatabaseStatement(Database& database, const std::string& sql)
-    : implementation_(translated([&] {
-          return std::make_unique<Implementation>(SQLite::Statement(database.implementation_->database, sql));
-      })) {}
+    : implementation_(
+          translated([&] { return std::make_unique<Implementation>(database.implementation_->database, sql); })) {}
 
 DatabaseStatement::~DatabaseStatement() = default;
 DatabaseStatement::DatabaseStatement(DatabaseStatement&&) noexcept = default;

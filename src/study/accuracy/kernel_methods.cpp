@@ -31,7 +31,7 @@ MatrixXd cycles_basis(const Pattern& pattern) {
     const Kernel kernel = exact_kernel(pattern);
     const int cells = pattern.cells;
     const double unit = std::sqrt(static_cast<double>(kernel.classes) / (4.0 * cells));
-    MatrixXd basis = MatrixXd::Zero(2 * cells, kernel.dimension());
+    MatrixXd basis = MatrixXd::Zero(2 * Eigen::Index{cells}, kernel.dimension());
     const int steps = pattern.period_steps();
     const auto add = [&](int n, Eigen::Index row, double factor) {
         n %= steps;  // the window may be longer than the period

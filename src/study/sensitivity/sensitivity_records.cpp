@@ -34,6 +34,7 @@ Shift direction_of(const RelaxedSet& set, Parameter parameter, int row = -1) {
 std::vector<Price> prices_of(const RelaxedSet& set, const OptimumSensitivity& optimum,
                              const std::vector<Parameter>& parameters) {
     std::vector<Price> prices;
+    prices.reserve(parameters.size());
     for (const Parameter parameter : parameters) {
         prices.push_back({parameter, {}, true, optimum.slope(direction_of(set, parameter))});
     }
