@@ -24,7 +24,7 @@ int launched(const char* open_mpi, const char* slurm) {
     for (const char* key : {open_mpi, slurm}) {
         // srun with PMIx or PMI-2; without either it did not start an MPI program.
         if (key == slurm && std::getenv("PMIX_RANK") == nullptr && std::getenv("PMI_RANK") == nullptr) continue;
-        if (const char* value = std::getenv(key)) return std::atoi(value);
+        if (const char* value = std::getenv(key)) return static_cast<int>(std::strtol(value, nullptr, 10));
     }
     return -1;
 }
