@@ -6,7 +6,7 @@ usage() {
 usage: sh tests/lint.sh
 
 Installs what is missing (sudo only if not root), then fails on a source that clang-format would change, on any finding of
-clang-tidy, and on any warning of Doxygen about the reference of the public headers (build/lint/reference/html).
+clang-tidy in the library and the program, and on any warning of Doxygen about the reference of the public headers (build/lint/reference/html).
 END
 }
 
@@ -28,7 +28,7 @@ find include src tests -name '*.[ch]pp' -exec clang-format --dry-run -Werror {} 
 say "clang-tidy"
 cmake --preset lint > /dev/null
 sed -n 's/.*"file": "\(.*\)".*/\1/p' build/lint/compile_commands.json |
-    xargs -P "$(nproc)" -n 1 clang-tidy -p build/lint --quiet --warnings-as-errors='*' \
+    tr '\n' '\0' | xargs -0 -P "$(nproc)" -n 1 clang-tidy -p build/lint --quiet --warnings-as-errors='*' \
         --extra-arg=-Wno-unknown-warning-option
 
 say "doxygen"

@@ -1,7 +1,6 @@
 #include "nsma/numerics/exact.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 namespace nsma {

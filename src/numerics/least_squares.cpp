@@ -1,8 +1,6 @@
 #include "least_squares.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 #include "decompositions.hpp"
 #include "expect_size.hpp"

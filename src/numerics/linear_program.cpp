@@ -1,13 +1,13 @@
 #include "linear_program.hpp"
-#include "expect_size.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <string>
 
 #include <coin/ClpConfig.h>
 #include <coin/ClpSimplex.hpp>
 #include <coin/CoinPackedVector.hpp>
+
+#include "expect_size.hpp"
 
 namespace nsma {
 

@@ -1,10 +1,11 @@
 #include "program.hpp"
-#include "expect_size.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include "expect_size.hpp"
 
 namespace nsma {
 namespace {

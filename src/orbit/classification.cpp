@@ -1,6 +1,5 @@
 #include "nsma/orbit/classification.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 

@@ -1,4 +1,5 @@
 #include "nsma/orbit/kernel.hpp"
+
 #include "index.hpp"
 
 namespace nsma {

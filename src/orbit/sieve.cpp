@@ -1,6 +1,5 @@
 #include "nsma/orbit/sieve.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <numeric>
 #include <stdexcept>

@@ -1,6 +1,5 @@
 #include "optimum_analysis.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 

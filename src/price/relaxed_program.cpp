@@ -1,11 +1,12 @@
 #include "relaxed_program.hpp"
-#include "numerics/expect_size.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "numerics/expect_size.hpp"
 
 namespace nsma {
 namespace {

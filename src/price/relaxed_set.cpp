@@ -1,9 +1,9 @@
 #include "nsma/price/relaxed_set.hpp"
-#include "numerics/expect_size.hpp"
 
 #include <stdexcept>
-#include <string>
 #include <utility>
+
+#include "numerics/expect_size.hpp"
 
 namespace nsma {
 namespace {

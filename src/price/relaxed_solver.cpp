@@ -1,7 +1,6 @@
 #include "relaxed_solver.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 #include <stdexcept>

@@ -1,9 +1,10 @@
 #include "orbit_program.hpp"
-#include "numerics/expect_size.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "numerics/expect_size.hpp"
 
 namespace nsma {
 namespace {

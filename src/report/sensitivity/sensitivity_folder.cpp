@@ -1,6 +1,5 @@
 #include "sensitivity_folder.hpp"
 
-#include <algorithm>
 #include <type_traits>
 
 #include <fmt/format.h>

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <string>
 
 #include "nsma/study/records.hpp"
 #include "nsma/study/scene.hpp"

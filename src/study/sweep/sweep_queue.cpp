@@ -1,8 +1,9 @@
 #include "sweep_queue.hpp"
-#include "orbit/index.hpp"
 
 #include <algorithm>
 #include <numeric>
+
+#include "orbit/index.hpp"
 
 namespace nsma {
 namespace {
