@@ -13,8 +13,7 @@ using nsma::KernelMethod;
 using nsma::Pattern;
 
 constexpr KernelMethod methods[] = {KernelMethod::exact_cycles, KernelMethod::dense_svd,
-                                    KernelMethod::rank_revealing_qr,
-                                    KernelMethod::matrix_powers};
+                                    KernelMethod::rank_revealing_qr, KernelMethod::matrix_powers};
 
 const nsma::Bar steel{1.0, 210e9, 7850.0, 1e-4, 1e-4};
 
