@@ -247,6 +247,11 @@ std::optional<RelaxedOptimum> relaxed_optimum(const RelaxedSet& set, const Relax
         const Polished closest = polish(nearest, base);
         if (closest.feasible) attempt(closest.x);
     }
+    // From the outermost points, then between them: random ones alone miss optima, and rounding decides which.
+    for (const auto& vertex : interval.vertices) {
+        if (global) break;
+        attempt(vertex / form.scale);
+    }
     std::mt19937_64 generator(1);
     for (int k = 0; k < request.starts && !global; ++k) {
         attempt(mixture(interval.least_point, interval.vertices, generator) / form.scale);
