@@ -9,6 +9,7 @@
 #include "numerics/boundary.hpp"
 #include "numerics/linear_program.hpp"
 #include "numerics/polish.hpp"
+#include "set/level_points.hpp"
 
 namespace nsma {
 namespace {
@@ -150,25 +151,13 @@ private:
     std::vector<Eigen::VectorXd> found_;
 };
 
-// t in [0, 1] with |from + t (to - from)| = 1, from inside to outside.
-Eigen::VectorXd crossing(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
-    const Eigen::VectorXd direction = to - from;
-    const double a = direction.squaredNorm();
-    const double b = from.dot(direction);
-    const double c = std::min(from.squaredNorm() - 1.0, 0.0);
-    const double root = std::sqrt(std::max(b * b - a * c, 0.0));
-    const double t = b > 0 ? -c / (b + root) : (root - b) / a;
-    return from + std::min(t, 1.0) * direction;
-}
-
-// A random point of the set: exponential weights are uniform over mixtures; drawn from raw bits so that every standard
-// library gives the same ones.
+// A random point of the set.
 Eigen::VectorXd mixture(const Eigen::VectorXd& base, const std::vector<Eigen::VectorXd>& vertices,
                         std::mt19937_64& generator) {
     Eigen::VectorXd sum = base;
     double total = 1.0;
     for (const auto& vertex : vertices) {
-        const double weight = -std::log((static_cast<double>(generator() >> 11) + 0.5) * 0x1.0p-53);
+        const double weight = random_weight(generator);
         sum += weight * vertex;
         total += weight;
     }
@@ -221,9 +210,9 @@ std::optional<RelaxedOptimum> relaxed_optimum(const RelaxedSet& set, const Relax
 
     const Eigen::VectorXd base = interval.least_point / form.scale;
     const auto on_level = [&](const Eigen::VectorXd& x) {
-        if (x.squaredNorm() >= 1) return crossing(base, x);
-        if (!interval.unbounded) return crossing(x, interval.vertices.front() / form.scale);
-        return crossing(x, Eigen::VectorXd(x + (1.0 + x.norm()) * interval.ray));
+        if (x.squaredNorm() >= 1) return crossing(base, x, 1.0);
+        if (!interval.unbounded) return crossing(x, interval.vertices.front() / form.scale, 1.0);
+        return crossing(x, Eigen::VectorXd(x + (1.0 + x.norm()) * interval.ray), 1.0);
     };
     std::optional<RelaxedOptimum> best;
     bool global = false;  // weak duality proves the best one

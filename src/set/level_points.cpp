@@ -11,19 +11,21 @@ namespace {
 // Distance beyond a row, relative to the size of the point, that rounding explains.
 constexpr double row_rounding = 1e-13;
 
-// The point of the segment with |x|^2 = square, from inside the ball to outside. Citardauq form: no
-// cancellation when `from` is close to the sphere.
+}  // namespace
+
 Eigen::VectorXd crossing(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double square) {
     const Eigen::VectorXd direction = to - from;
     const double a = direction.squaredNorm();
     const double b = from.dot(direction);
-    const double c = from.squaredNorm() - square;  // <= 0
+    const double c = std::min(from.squaredNorm() - square, 0.0);
     const double root = std::sqrt(std::max(b * b - a * c, 0.0));
     const double t = b > 0 ? -c / (b + root) : (root - b) / a;
     return from + std::min(t, 1.0) * direction;
 }
 
-}  // namespace
+double random_weight(std::mt19937_64& generator) {
+    return -std::log((static_cast<double>(generator() >> 11) + 0.5) * 0x1.0p-53);
+}
 
 LevelPoints::LevelPoints(const AdmissibleSet& set, double level) : set_(set), level_(level) {
     if (set.status != AdmissibleSet::Status::nonempty || set.vertices.empty() || !(level > 0)) {
@@ -72,16 +74,10 @@ Eigen::VectorXd LevelPoints::admissible_near(Eigen::VectorXd gamma) const {
 
 Eigen::VectorXd LevelPoints::mixture(int seed) const {
     std::mt19937_64 generator(static_cast<std::uint64_t>(seed));
-    // Exponential weights are uniform over mixtures; drawn from raw bits so that every
-    // standard library gives the same ones.
-    const auto weight = [&] {
-        const double uniform = (static_cast<double>(generator() >> 11) + 0.5) * 0x1.0p-53;
-        return -std::log(uniform);
-    };
-    double total = weight();
+    double total = random_weight(generator);
     Eigen::VectorXd sum = total * base_;
     for (const auto& vertex : set_.vertices) {
-        const double w = weight();
+        const double w = random_weight(generator);
         sum += w * vertex;
         total += w;
     }

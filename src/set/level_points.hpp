@@ -1,12 +1,20 @@
 #pragma once
 
 #include <optional>
+#include <random>
 
 #include <Eigen/Core>
 
 #include "nsma/set/admissible_set.hpp"
 
 namespace nsma {
+
+/// Where the segment between two points reaches the sphere |x|^2 = square: from inside (or on it) to
+/// outside; no cancellation where `from` is close to it.
+[[nodiscard]] Eigen::VectorXd crossing(const Eigen::VectorXd& from, const Eigen::VectorXd& to, double square);
+
+/// Exponential weights are uniform over mixtures; drawn from raw bits so that every standard library gives the same.
+[[nodiscard]] double random_weight(std::mt19937_64& generator);
 
 /// Points of an admissible set at one energy level, without a solver: between two admissible
 /// points the energy is a quadratic, so a segment from below the level to above it crosses it

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../support/bar_with_gap.hpp"
 #include "nsma/orbit/conditions.hpp"
 #include "nsma/orbit/replay.hpp"
 
@@ -16,12 +17,6 @@ using nsma::LabelledMotion;
 using nsma::least_label;
 using nsma::Orbit;
 using nsma::Pattern;
-
-Bar bar_with_gap(double gap) {
-    Bar bar;
-    bar.gap = gap;
-    return bar;
-}
 
 Orbit orbit_of(const Pattern& pattern, const VectorXd& beta, double gap = 1.0) {
     return nsma::make_orbit(bar_with_gap(gap), nsma::exact_kernel(pattern), beta);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../support/bar_with_gap.hpp"
 #include "wave/dense_wfem.hpp"
 #include "nsma/orbit/backbone.hpp"
 #include "nsma/orbit/conditions.hpp"
@@ -23,14 +24,8 @@ using nsma::Pattern;
 using nsma::Replay;
 using nsma::replay;
 
-Bar with_gap(double gap) {
-    Bar bar;
-    bar.gap = gap;
-    return bar;
-}
-
 Orbit one_amplitude(const Pattern& pattern, double gap, double beta) {
-    return make_orbit(with_gap(gap), exact_kernel(pattern), VectorXd::Constant(1, beta));
+    return make_orbit(bar_with_gap(gap), exact_kernel(pattern), VectorXd::Constant(1, beta));
 }
 
 TEST(Replay, AcceptsTheSmallestFirstModeOrbit) {
@@ -99,22 +94,23 @@ TEST(Replay, ClosedGapIsRelativeToTheLargestDisplacement) {
     ASSERT_EQ(nsma::contact_row(kernel), Eigen::VectorXi::Zero(2));
     for (const double size : {1e-6, 1.0, 1e6}) {
         const VectorXd beta = (VectorXd(2) << -size, -1.1 * size).finished();
-        const Orbit orbit = make_orbit(with_gap(0.0), kernel, beta);
+        const Orbit orbit = make_orbit(bar_with_gap(0.0), kernel, beta);
         EXPECT_TRUE(replay(orbit, 8.0 * beta.squaredNorm(), 1000).accepted);  // 4 N^2/g = 8
-        const Replay mirrored = replay(make_orbit(with_gap(0.0), kernel, -beta));
+        const Replay mirrored = replay(make_orbit(bar_with_gap(0.0), kernel, -beta));
         EXPECT_FALSE(mirrored.accepted);
         EXPECT_EQ(mirrored.violations.cond1, 1.0);  // its whole flight is inside the wall
         EXPECT_EQ(mirrored.violations.cond3, 1.0);
         // N = 6, (16, 4), equal amplitudes: the tip goes from 4 size down to -12 size in 8 steps,
         // and stays at 4 size in contact.
-        const Replay off = replay(make_orbit(with_gap(0.0), exact_kernel({6, 16, 4}), VectorXd::Constant(4, -size)));
+        const Replay off =
+            replay(make_orbit(bar_with_gap(0.0), exact_kernel({6, 16, 4}), VectorXd::Constant(4, -size)));
         EXPECT_NEAR(off.violations.cond2, 1.0 / 3.0, 1e-15);  // sums of 12 equal numbers
         EXPECT_FALSE(off.accepted);
     }
     // Rest at the closed wall: every step silent, nothing violated.
-    EXPECT_TRUE(replay(make_orbit(with_gap(0.0), kernel, VectorXd::Zero(2))).accepted);
+    EXPECT_TRUE(replay(make_orbit(bar_with_gap(0.0), kernel, VectorXd::Zero(2))).accepted);
     // Rest away from an open wall is no contact orbit: x = 0 in "contact".
-    EXPECT_EQ(replay(make_orbit(with_gap(1.0), kernel, VectorXd::Zero(2))).violations.cond2, 1.0);
+    EXPECT_EQ(replay(make_orbit(bar_with_gap(1.0), kernel, VectorXd::Zero(2))).violations.cond2, 1.0);
 }
 
 TEST(Replay, FourClassesBetweenLeastAndMostEnergy) {
@@ -159,7 +155,7 @@ TEST(Replay, AcceptsEveryPointOfTheFirstModeSimplex) {
                             VectorXd::NullaryExpr(m, [&](Eigen::Index) { return std::pow(10.0, -decades(random)); });
                     }
                     const VectorXd beta = gap_sign * weight.cwiseQuotient(row) / weight.sum();
-                    const Replay verdict = replay(make_orbit(with_gap(gap_sign), kernel, beta), std::nullopt, 50);
+                    const Replay verdict = replay(make_orbit(bar_with_gap(gap_sign), kernel, beta), std::nullopt, 50);
                     ASSERT_TRUE(verdict.accepted) << "N " << cells << ", r " << pattern.free_steps << ", p "
                                                   << pattern.contact_steps << ", beta " << beta.transpose();
                     // Nothing but rounding of 2N waves of order |d|.
@@ -193,7 +189,7 @@ TEST(Replay, AmplitudesWithNoForceAreNotDividedByNoise) {
 TEST(Replay, VerdictIsThatOfTheLiteralScheme) {
     int accepted = 0;
     int rejected = 0;
-    for (const Bar& bar : {with_gap(1.0), with_gap(-1.0), Bar{1.0, 210e9, 7850.0, 1e-4, 1e-4}}) {
+    for (const Bar& bar : {bar_with_gap(1.0), bar_with_gap(-1.0), Bar{1.0, 210e9, 7850.0, 1e-4, 1e-4}}) {
         for (int cells = 1; cells <= 6; ++cells) {
             for (const Pattern& pattern : nsma::patterns_in(cells, {.period_hi = 6 * cells})) {
                 const Kernel kernel = exact_kernel(pattern);

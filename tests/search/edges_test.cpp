@@ -7,6 +7,7 @@
 #include "../check/literal.hpp"
 #include "../proof/truth.hpp"
 
+#include "../support/bar_with_gap.hpp"
 #include "nsma/search/orbit_solver.hpp"
 #include "nsma/search/pattern_problem.hpp"
 
@@ -28,12 +29,6 @@ constexpr bool sanitized = true;
 #else
 constexpr bool sanitized = false;
 #endif
-
-Bar bar_with_gap(double gap) {
-    Bar bar;
-    bar.gap = gap;
-    return bar;
-}
 
 /// Verdicts are the subject here, not the optimum: one start, no bound.
 OrbitSolverOptions quick() {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../support/bar_with_gap.hpp"
 #include "set/level_points.hpp"
 #include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
@@ -25,12 +26,6 @@ using nsma::Pattern;
 using nsma::pattern_problem;
 using nsma::SolverChoice;
 using nsma::Verdict;
-
-Bar bar_with_gap(double gap) {
-    Bar bar;
-    bar.gap = gap;
-    return bar;
-}
 
 /// Both solvers, what they agree about being tested.
 OrbitSolverOptions usual() {
