@@ -132,6 +132,24 @@ TEST(RelaxedSet, TimeReversalKeepsEverything) {
     }
 }
 
+// Random mixtures alone met worse optima of these patterns, which ones by rounding.
+TEST(RelaxedSet, OptimaDoNotRestOnRandomStarts) {
+    for (const auto& pattern : {nsma::Pattern{20, 56, 12}, nsma::Pattern{20, 50, 15}}) {
+        const RelaxedSet set = nsma::relaxed_set(nsma::exact_kernel(pattern), 1);
+        const nsma::Shift shift = set.shift({.band = 0.1, .adhesion = 0.1});
+        const auto interval = nsma::relaxed_interval(set, shift);
+        for (const Objective objective : {Objective::least_shock, Objective::least_force}) {
+            nsma::RelaxedRequest request{
+                .objective = objective, .level = 2 * interval.least, .shift = shift, .near = {}};
+            const auto from_vertices = nsma::relaxed_optimum(set, interval, request);
+            request.starts = 50;
+            const auto from_many = nsma::relaxed_optimum(set, interval, request);
+            ASSERT_TRUE(from_vertices && from_many);
+            EXPECT_LE(from_vertices->objective, from_many->objective * (1 + 1e-9));  // two polishes
+        }
+    }
+}
+
 TEST(RelaxedSet, RefusesMisuse) {
     const Kernel kernel = nsma::exact_kernel({6, 16, 4});
     const RelaxedSet set = nsma::relaxed_set(kernel, 1);
