@@ -3,13 +3,15 @@
 #include "command.hpp"
 #include "progress.hpp"
 
+#include "nsma/numerics/interruption.hpp"
 #include "study/accuracy/accuracy.hpp"
 #include "nsma/report/input_error.hpp"
+#include "report/folder_lock.hpp"
 #include "report/accuracy/accuracy_folder.hpp"
 
 namespace nsma::app {
 
-int run_accuracy(const Arguments& arguments, const std::atomic<bool>& stop) {
+int run_accuracy(const Arguments& arguments) {
     const Scene scene = arguments.scene();
     if (scene.bar.gap_sign() == 0) {
         throw InputError(arguments.input +
@@ -19,14 +21,19 @@ int run_accuracy(const Arguments& arguments, const std::atomic<bool>& stop) {
         throw InputError(fmt::format("{}: objective: expected one at a given energy, got {}", arguments.input,
                                      name(scene.objective)));
     }
+    const FolderLock lock(arguments.out);
     AccuracyFolder folder(arguments.out, scene);
     Progress progress("accuracy", arguments.quiet);
-    const bool whole = accuracy(
-        scene, arguments.quick, [&](const AccuracyRecord& record) { folder.add(record); },
-        [&](long done, long total) {
-            progress.show(done, total);
-            return !stop.load();
-        });
+    bool whole = false;
+    try {
+        whole = accuracy(
+            scene, arguments.quick, [&](const AccuracyRecord& record) { folder.add(record); },
+            [&](long done, long total) {
+                progress.show(done, total);
+                return !stop_requested();
+            });
+    } catch (const Interrupted&) {  // in the middle of a piece of work
+    }
     progress.clear();
     if (!whole) {
         fmt::print("interrupted: the rows so far are in {} as .part files\n", arguments.out);

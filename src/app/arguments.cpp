@@ -22,19 +22,16 @@ Scene Arguments::scene() const {
     try {
         validate(scene.bar);
         validate(scene.mesh);
+        if (free_steps == 0) expect_feasible(scene);
     } catch (const std::invalid_argument& error) {
-        throw InputError(std::string("command line: ") + error.what());
+        throw InputError((cells || gap || period ? "command line: " : input + ": ") + error.what());
     }
     return scene;
 }
 
 std::vector<Pattern> Arguments::patterns(const Scene& scene) const {
     if (free_steps > 0) return {{scene.mesh.cells, free_steps, contact_steps}};
-    try {
-        return patterns_of(scene);
-    } catch (const std::invalid_argument& error) {
-        throw InputError(std::string("command line: ") + error.what());
-    }
+    return patterns_of(scene);
 }
 
 void Arguments::check_energy(const Scene& scene, const std::string& objective_from) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,11 +40,18 @@ struct Arguments {
     void check_energy(const Scene& scene, const std::string& objective_from) const;
 };
 
-enum ExitCode { exit_done = 0, exit_input = 2, exit_inadmissible = 3, exit_solver = 4, exit_interrupted = 130 };
+enum ExitCode {
+    exit_done = 0,
+    exit_input = 2,
+    exit_inadmissible = 3,
+    exit_solver = 4,
+    exit_interrupted = 130,
+    exit_terminated = 143  ///< interrupted by SIGTERM
+};
 
-/// Each runs one command and returns its exit code. `stop` turns true on Ctrl-C; long work then ends after the solve in
-/// hand and keeps what it has. Throw InputError on bad input.
-using Run = int(const Arguments& arguments, const std::atomic<bool>& stop);
+/// Each runs one command and returns its exit code. Throw InputError on bad input, and Interrupted where they have
+/// nothing to keep.
+using Run = int(const Arguments& arguments);
 Run run_scan, run_orbit, run_sweep, run_export, run_accuracy, run_sensitivity, run_plot, run_prove, run_check;
 
 /// The names of `--solver`.

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <functional>
 
@@ -9,6 +11,7 @@
 #include "numerics/linear_program.hpp"
 #include "numerics/solver.hpp"
 #include "nsma/report/input_error.hpp"
+#include "nsma/report/scene_file.hpp"
 #include "report/one_line.hpp"
 
 namespace nsma::app {
@@ -16,24 +19,46 @@ namespace {
 
 using Option = std::function<void(CLI::App& command, Arguments& arguments)>;
 
-// Accepts the values that fit; `description` stands in the help, `expected` in the refusal.
+// The number that a word is from its first to its last character, decimal whatever it begins with.
+template <class Value>
+std::optional<Value> number_in(std::string_view word) {
+    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+    Value value{};
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size() ? std::optional(value) : std::nullopt;
+}
+
+// Accepts the numbers that fit; `description` stands in the help, `expected` in the refusal. What is accepted is
+// written so that the library, which takes 010 for eight, reads it as it was read here.
 template <class Value, class Fits>
-CLI::Validator expect(const char* description, const std::string& expected, Fits fits) {
-    return {[expected, fits](const std::string& text) -> std::string {
-                Value value{};
-                if (CLI::detail::lexical_cast(text, value) && fits(value)) return {};
-                return "expected " + expected + ", got " + text;
+CLI::Validator number(const char* description, const std::string& expected, Fits fits) {
+    return {[expected, fits](std::string& text) -> std::string {
+                const auto value = number_in<Value>(text);
+                if (!value || !fits(*value)) return "expected " + expected + ", got " + shortened(text);
+                if constexpr (std::is_integral_v<Value>)
+                    text = std::to_string(*value);
+                else
+                    text = fmt::format("{:a}", *value);
+                return {};
             },
             description};
 }
 
 CLI::Validator finite() {
-    return expect<double>("NUMBER", "a finite number", [](double value) { return std::isfinite(value); });
+    return number<double>("NUMBER", "a finite number", [](double value) { return std::isfinite(value); });
 }
 
 CLI::Validator whole(int lo, int hi) {
-    return expect<std::int64_t>("INTEGER", fmt::format("a whole number in {}..{}", lo, hi),
+    return number<std::int64_t>("INTEGER", fmt::format("a whole number in {}..{}", lo, hi),
                                 [lo, hi](std::int64_t value) { return value >= lo && value <= hi; });
+}
+
+template <class Fits>
+CLI::Validator word_of(const std::string& names, Fits fits) {
+    return {[names, fits](const std::string& word) -> std::string {
+                return fits(word) ? std::string() : "expected " + names + ", got " + shortened(word);
+            },
+            "NAME"};
 }
 
 Option text(const char* name, std::string Arguments::*value, const char* help) {
@@ -82,6 +107,7 @@ Option pattern(bool required) {
         if (required) return;
         free->needs(contact);
         contact->needs(free);
+        if (CLI::Option* period = command.get_option_no_throw("--period")) period->excludes(free);
     };
 }
 
@@ -93,8 +119,8 @@ void energy(CLI::App& command, Arguments& arguments) {
                            always ? "energy ratio E/E_g (joules for a closed gap); without it the least-energy orbit"
                                   : "energy ratio E/E_g of one pattern (joules for a closed gap); without it its least "
                                     "energy");
-    option->check(expect<double>("NUMBER>0", "a finite number > 0",
-                                 [](double value) { return std::isfinite(value) && value > 0; }));
+    option->check(number<double>("NUMBER>0", fmt::format("a number from {:g} to {:g}", least_level, greatest_level),
+                                 [](double value) { return value >= least_level && value <= greatest_level; }));
     if (!always) option->needs(free);
 }
 
@@ -102,7 +128,7 @@ void objective(CLI::App& command, Arguments& arguments) {
     const std::string names = "least-shock, nearest, least-force, min-energy or max-energy";
     const auto set = [&](const std::string& word) { arguments.objective = objective_named(word); };
     command.add_option_function<std::string>("--objective", set, names + " instead of the scene's")
-        ->check(expect<std::string>("NAME", names, [](const auto& word) { return objective_named(word).has_value(); }));
+        ->check(word_of(names, [](const auto& word) { return objective_named(word).has_value(); }));
 }
 
 void solver(CLI::App& command, Arguments& arguments) {
@@ -115,8 +141,8 @@ void solver(CLI::App& command, Arguments& arguments) {
             "--solver", [&, known](const std::string& word) { arguments.solver.solvers = known(word)->second; },
             "proof: closed forms, a solver only where they prove nothing (default); both: Ipopt and NLopt "
             "as well, against each other; ipopt; nlopt")
-        ->check(expect<std::string>("NAME", "ipopt, nlopt, both or proof",
-                                    [known](const auto& word) { return known(word) != solver_choices.end(); }));
+        ->check(word_of("ipopt, nlopt, both or proof",
+                        [known](const auto& word) { return known(word) != solver_choices.end(); }));
     command
         .add_option(
             "--starts", arguments.solver.starts,
@@ -215,8 +241,10 @@ constexpr const char* examples_and_exit_codes =
     "  nsma plot out/first-mode\n"
     "  nsma prove problems/first-mode.toml --out proofs.jsonl\n"
     "  nsma check proofs.jsonl\n"
-    "Exit: 0 done, 2 bad usage or scene, 3 nothing admissible, 4 a solver failed, the two\n"
-    "disagree beyond tolerance or a proof does not hold, 130 interrupted (what was done is kept).";
+    "Exit: 0 done, 2 bad usage, scene or file, 3 nothing admissible, 4 a solver failed, the two\n"
+    "disagree beyond tolerance or a proof does not hold, 130 interrupted or 143 terminated\n"
+    "(what was done is kept; a second signal ends at once). At most 10 million patterns, and\n"
+    "a thousand million levels over all of them.";
 
 }  // namespace
 
@@ -231,12 +259,19 @@ std::optional<Command> read_command_line(int count, const char* const* words) {
     app.set_version_flag("--version", version());
     app.footer(examples_and_exit_codes);
     Command chosen;
+    std::vector<const char*> names;
     for (const Entry& entry : commands()) {
+        names.push_back(entry.name);
         CLI::App* command = app.add_subcommand(entry.name, entry.summary);
         for (const Option& option : entry.options) option(*command, chosen.arguments);
         command->footer(entry.examples);
         command->failure_message(CLI::FailureMessage::simple);
         command->callback([&chosen, run = entry.run] { chosen.run = run; });
+    }
+    const std::string_view word = count > 1 ? words[1] : "none";
+    if (!word.starts_with('-') && std::find(names.begin(), names.end(), word) == names.end()) {
+        throw InputError(one_line(fmt::format("command line: expected one of {}, got {} (see nsma --help)",
+                                              fmt::join(names, ", "), shortened(std::string(word)))));
     }
     try {
         app.parse(count, words);

@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
 #include <mpi.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -119,12 +121,15 @@ struct Crew::Implementation {
     int in = -1;   // from the child, or from rank 0
     int out = -1;  // to it
     bool dismissed = false;
+    bool left = false;
     Pause pause;
+    std::set<int> gone;  // ranks that left
 
     void split() {
         int down[2], up[2];
-        if (pipe(down) != 0) throw std::runtime_error("cannot make a pipe");
-        if (pipe(up) != 0) throw std::runtime_error("cannot make a pipe");
+        // What MPI starts must not keep the child's pipes open.
+        if (pipe2(down, O_CLOEXEC) != 0 || pipe2(up, O_CLOEXEC) != 0)
+            throw std::runtime_error("cannot make a pipe");
         child = fork();
         if (child < 0) throw std::runtime_error("cannot start a process");
         is_child = child == 0;
@@ -154,32 +159,38 @@ Crew::Crew() : implementation_(std::make_unique<Implementation>()) {
     self.mpi = true;
     MPI_Comm_rank(MPI_COMM_WORLD, &self.rank);
     MPI_Comm_size(MPI_COMM_WORLD, &self.ranks);
+    // The variables were left over from another launch: this process is alone.
+    if (self.ranks < 2) self.drop_child();
 }
 
 Crew::~Crew() {
     auto& self = *implementation_;
     if (!self.mpi) return;
     if (self.rank == 0) {
-        for (int rank = 1; rank < self.ranks; ++rank) send(rank, tag_dismissed, {});
+        for (int rank = 1; rank < self.ranks; ++rank) {
+            if (!self.gone.contains(rank)) send(rank, tag_dismissed, {});
+        }
         self.drop_child();
-        for (int left = self.ranks - 1; left > 0;) {
+        while (static_cast<int>(self.gone.size()) < self.ranks - 1) {
             const auto received = receive();
             if (!received) std::this_thread::sleep_for(self.pause.next());
-            if (received && received->tag == tag_goodbye) --left;
+            if (received && received->tag == tag_goodbye) self.gone.insert(received->rank);
         }
     } else {
         // Before its dismissal only an error ends a helper: then everything ends, what is stored stays.
         if (!self.dismissed) MPI_Abort(MPI_COMM_WORLD, 4);
-        send(0, tag_goodbye, {});
+        if (!self.left) send(0, tag_goodbye, {});
     }
     MPI_Finalize();
 }
 
 bool Crew::helper() const { return implementation_->is_child || implementation_->rank > 0; }
 
-int Crew::workers() const { return implementation_->mpi ? implementation_->ranks : 0; }
+int Crew::workers() const { return implementation_->ranks > 1 ? implementation_->ranks : 0; }
 
-bool Crew::present(int worker) const { return worker != child_worker || implementation_->child > 0; }
+bool Crew::present(int worker) const {
+    return worker == child_worker ? implementation_->child > 0 : !implementation_->gone.contains(worker);
+}
 
 void Crew::hand(int worker, const std::string& bytes) {
     auto& self = *implementation_;
@@ -194,7 +205,9 @@ std::optional<Crew::Message> Crew::wait() {
     auto& self = *implementation_;
     if (auto received = receive()) {
         self.pause.over();
-        return Message{received->rank, false, std::move(received->bytes)};
+        const bool lost = received->tag == tag_goodbye;
+        if (lost) self.gone.insert(received->rank);
+        return Message{received->rank, lost, std::move(received->bytes)};
     }
     if (self.child <= 0) {
         std::this_thread::sleep_for(self.pause.next());
@@ -212,7 +225,7 @@ std::optional<Crew::Message> Crew::wait() {
 std::optional<std::string> Crew::next() {
     auto& self = *implementation_;
     if (self.is_child) return read_message(self.in);
-    for (;;) {
+    while (!self.dismissed) {
         auto received = receive();
         if (!received) {
             std::this_thread::sleep_for(self.pause.next());
@@ -221,8 +234,8 @@ std::optional<std::string> Crew::next() {
         self.pause.over();
         if (received->tag == tag_unit) return std::move(received->bytes);
         self.dismissed = true;
-        return std::nullopt;
     }
+    return std::nullopt;
 }
 
 void Crew::report(const std::string& bytes) {
@@ -234,6 +247,11 @@ void Crew::report(const std::string& bytes) {
     }
 }
 
-bool silent_rank() { return launched_size() > 1 && launched_rank() > 0; }
+void Crew::leave() {
+    auto& self = *implementation_;
+    if (self.is_child) std::_Exit(0);
+    self.left = self.dismissed = true;
+    send(0, tag_goodbye, {});
+}
 
 }  // namespace nsma::app

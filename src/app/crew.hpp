@@ -8,7 +8,8 @@ namespace nsma::app {
 
 /// The processes of one sweep. Started by mpirun (or srun) with several ranks, rank 0 schedules
 /// and writes and every rank computes: rank 0 by a child process forked before MPI begins, so
-/// that it answers while its child solves. Started alone there is no one else.
+/// that it answers while its child solves. Started alone there is no one else; MPI says whether
+/// it is, since the variables of a launcher may be left over from another program.
 class Crew {
 public:
     Crew();
@@ -34,13 +35,12 @@ public:
     /// Helpers: the next unit, absent when dismissed; and its result.
     [[nodiscard]] std::optional<std::string> next();
     void report(const std::string& bytes);
+    /// Without a result for the unit in hand, which goes to others; there is no next one.
+    void leave();
 
 private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
-
-/// Whether this process is a rank other than 0, which leaves talking to rank 0.
-[[nodiscard]] bool silent_rank();
 
 }  // namespace nsma::app

@@ -112,7 +112,7 @@ int exit_code(const OrbitAnswer& answer) {
 
 }  // namespace
 
-int run_orbit(const Arguments& arguments, const std::atomic<bool>&) {
+int run_orbit(const Arguments& arguments) {
     const Scene scene = arguments.scene();
     arguments.check_energy(scene, "command line: --objective");
     OrbitRequest request;

@@ -2,22 +2,26 @@
 
 #include "command.hpp"
 #include "progress.hpp"
+#include "standard_streams.hpp"
 
+#include "nsma/numerics/interruption.hpp"
 #include "nsma/study/sensitivity/sensitivity.hpp"
+#include "report/folder_lock.hpp"
 #include "report/sensitivity/sensitivity_folder.hpp"
 
 namespace nsma::app {
-int run_sensitivity(const Arguments& arguments, const std::atomic<bool>& stop) {
+int run_sensitivity(const Arguments& arguments) {
     const Scene scene = arguments.scene();
     arguments.check_energy(scene, arguments.input + ": objective");
     SensitivityRequest request;
     request.solver = arguments.solver;
     request.level = arguments.energy;
     if (arguments.free_steps > 0) request.pattern = arguments.patterns(scene).front();
+    const FolderLock lock(arguments.out);
     open_sensitivity_folder(arguments.out, scene);
     Progress progress("sensitivity", arguments.quiet);
     const SensitivityRecords records = sensitivity(
-        scene, request, [&] { return !stop.load(); }, [&](long done, long total) { progress.show(done, total); });
+        scene, request, [&] { return !stop_requested(); }, [&](long done, long total) { progress.show(done, total); });
     const SensitivitySummary& summary = records.summary;
     progress.clear();
     write_sensitivity(arguments.out, scene, records);
@@ -27,7 +31,7 @@ int run_sensitivity(const Arguments& arguments, const std::atomic<bool>& stop) {
             fmt::print("chart    {}\n", picture.string());
     }
     if (summary.left > 0 && summary.left == summary.admissible) {
-        fmt::print(stderr, "nsma: no pattern of the scene is a contact motion; --all-kinds studies the other {}\n",
+        say("no pattern of the scene is a contact motion; --all-kinds studies the other {}",
                    summary.left);
     }
     if (summary.interrupted) return exit_interrupted;

@@ -8,11 +8,15 @@
 #include "command.hpp"
 #include "crew.hpp"
 #include "progress.hpp"
+#include "standard_streams.hpp"
 
 #include "study/sweep/sweep_queue.hpp"
 #include "study/sweep/work_messages.hpp"
+#include "nsma/numerics/interruption.hpp"
+#include "report/folder_lock.hpp"
 #include "report/sweep/sweep_charts.hpp"
 #include "report/sweep/sweep_export.hpp"
+#include "report/sweep/sweep_folder.hpp"
 #include "report/sweep/tables.hpp"
 
 namespace nsma::app {
@@ -23,7 +27,7 @@ void draw(const std::string& folder, bool list = true) {
     for (const auto& picture : charts.pictures) {
         if (list) fmt::print("chart    {}\n", picture.string());
     }
-    for (const auto& line : charts.skipped) fmt::print(stderr, "nsma: {}\n", line);
+    for (const auto& line : charts.skipped) say("{}", line);
 }
 
 // What decides an answer besides scene and software.
@@ -34,10 +38,26 @@ std::string options_text(const OrbitSolverOptions& options, bool all_kinds) {
                        options.solver.tolerance, all_kinds ? "all" : "contact");
 }
 
-// A process that only computes.
-void help(Crew& crew, const Scene& scene, const OrbitSolverOptions& options) {
-    SweepWorker worker(scene, options);
-    while (const auto units = crew.next()) crew.report(packed(worker.run(unpacked_units(*units))));
+// A process that only computes. Of a scene that nobody can read the process that leads tells.
+int help(Crew& crew, const Arguments& arguments) {
+    std::optional<Scene> scene;
+    std::string refusal;
+    try {
+        scene = arguments.scene();
+    } catch (const InputError& error) {
+        refusal = error.what();
+    }
+    std::optional<SweepWorker> worker;
+    while (const auto units = crew.next()) {
+        if (!scene) throw InputError(refusal);
+        if (!worker) worker.emplace(*scene, arguments.solver);
+        try {
+            crew.report(packed(worker->run(unpacked_units(*units))));
+        } catch (const Interrupted&) {
+            crew.leave();
+        }
+    }
+    return scene ? exit_done : exit_input;
 }
 
 // The number of this process among the workers of a queue; the crew's are 0, 1, ...
@@ -45,14 +65,14 @@ constexpr int own_worker = -2;
 
 // Hands out units and takes in results until all is done, stop is asked or nobody is left.
 void share(Crew& crew, const Scene& scene, SweepQueue& queue,
-           const std::function<void(const std::vector<WorkResult>&)>& keep, const std::atomic<bool>& stop) {
+           const std::function<void(const std::vector<WorkResult>&)>& keep) {
     std::set<int> idle;
     for (int worker = 0; worker < crew.workers(); ++worker) {
         if (crew.present(worker)) idle.insert(worker);
     }
     std::size_t present = idle.size();
     const auto give = [&](int worker) {
-        const auto units = stop.load() ? std::vector<WorkUnit>() : queue.next(worker);
+        const auto units = stop_requested() ? std::vector<WorkUnit>() : queue.next(worker);
         if (units.empty()) return false;
         crew.hand(worker, packed(units));
         idle.erase(worker);
@@ -61,8 +81,8 @@ void share(Crew& crew, const Scene& scene, SweepQueue& queue,
     while (present > 0) {
         while (!idle.empty() && give(*idle.begin())) {
         }
-        // What is in hand is kept also after stop.
-        if (idle.size() == present && (queue.finished() || stop.load())) return;
+        // After a stop what the others have in hand is kept, where they do not stop as well.
+        if (idle.size() == present && (queue.finished() || stop_requested())) return;
         const auto message = crew.wait();
         if (!message) continue;
         if (message->lost) {
@@ -78,8 +98,7 @@ void share(Crew& crew, const Scene& scene, SweepQueue& queue,
 }
 
 // Everything that is not yet in the store, until stop is asked.
-void solve(const Arguments& arguments, Crew& crew, const Scene& scene, SweepStore& store,
-           const std::atomic<bool>& stop) {
+void solve(const Arguments& arguments, Crew& crew, const Scene& scene, SweepStore& store) {
     SweepQueue queue(scene, arguments.solver,
                      crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
     if (arguments.resume) store.for_each([&queue](const WorkResult& result) { queue.done(result); });
@@ -90,13 +109,17 @@ void solve(const Arguments& arguments, Crew& crew, const Scene& scene, SweepStor
         for (const WorkResult& result : results) queue.done(result);
         progress.show(queue.done_count(), queue.total_count());
     };
-    if (crew.workers() > 0) share(crew, scene, queue, keep, stop);
+    if (crew.workers() > 0) share(crew, scene, queue, keep);
     // Alone, or with everyone else gone.
     SweepWorker worker(scene, arguments.solver);
-    while (!queue.finished() && !stop.load()) {
-        const auto units = queue.next(own_worker);
-        if (units.empty()) break;
-        keep(worker.run(units));
+    try {
+        while (!queue.finished()) {
+            stop_point();
+            const auto units = queue.next(own_worker);
+            if (units.empty()) break;
+            keep(worker.run(units));
+        }
+    } catch (const Interrupted&) {  // the store says what is left
     }
     if (!store.complete()) {
         store.add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
@@ -106,16 +129,14 @@ void solve(const Arguments& arguments, Crew& crew, const Scene& scene, SweepStor
 
 }  // namespace
 
-int run_sweep(const Arguments& arguments, const std::atomic<bool>& stop) {
-    const Scene scene = arguments.scene();
+int run_sweep(const Arguments& arguments) {
     Crew crew;
-    if (crew.helper()) {
-        help(crew, scene, arguments.solver);
-        return exit_done;
-    }
+    if (crew.helper()) return help(crew, arguments);
+    const Scene scene = arguments.scene();
+    const FolderLock lock(arguments.out);
     SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver, scene.all_kinds)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
-    solve(arguments, crew, scene, store, stop);
+    solve(arguments, crew, scene, store);
     const auto [summary, line] = export_sweep(store, arguments.out, arguments.distinct);
     fmt::print("{}{}\n", summary_table(summary), line);
     if (summary.interrupted) return exit_interrupted;
@@ -123,20 +144,24 @@ int run_sweep(const Arguments& arguments, const std::atomic<bool>& stop) {
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
     if (summary.left > 0 && summary.left == summary.admissible) {
         std::fflush(stdout);
-        fmt::print(stderr, "nsma: no pattern of the scene is a contact motion; --all-kinds solves the other {}\n",
+        say("no pattern of the scene is a contact motion; --all-kinds solves the other {}",
                    summary.left);
     }
     const bool found = summary.levels > 0 ? summary.solved > 0 : summary.admissible > summary.left;
     return found ? exit_done : exit_inadmissible;
 }
 
-int run_export(const Arguments& arguments, const std::atomic<bool>&) {
+int run_export(const Arguments& arguments) {
+    expect_sweep_folder(arguments.input);
+    const FolderLock lock(arguments.input);
     const SweepStore store(arguments.input);
     fmt::print("{}\n", export_sweep(store, arguments.input, arguments.distinct).line);
     return exit_done;
 }
 
-int run_plot(const Arguments& arguments, const std::atomic<bool>&) {
+int run_plot(const Arguments& arguments) {
+    expect_sweep_folder(arguments.input);
+    const FolderLock lock(arguments.input);
     draw(arguments.input, !arguments.quiet);
     return exit_done;
 }

@@ -3,11 +3,30 @@
 #include <iterator>
 #include <utility>
 
+#include "nsma/numerics/interruption.hpp"
+
 namespace nsma {
+namespace {
+
+// Honest denominators are products of a few numbers below 2^40.
+constexpr unsigned common_bits = 1024;
+// Steps walked and columns compared over all forms of a certificate: some ten seconds. A chain of 500 columns, ten
+// megabytes of text, has three millions.
+constexpr double most_work = 1e8;
+
+}  // namespace
 
 void invalid(std::string reason) { throw Invalid{std::move(reason)}; }
 
 std::string column_name(int column) { return "column " + std::to_string(column); }
+
+Integer common_multiple(const Integer& a, const Integer& b) {
+    Integer result = lcm(a, b);
+    if (msb(result) >= common_bits) {
+        invalid("fractions: expected a common denominator below 2^" + std::to_string(common_bits) + ", got one above");
+    }
+    return result;
+}
 
 CertificateTerms::CertificateTerms(const Certificate& of)
     : certificate(of),
@@ -15,18 +34,24 @@ CertificateTerms::CertificateTerms(const Certificate& of)
       signs(conditions(kernel, of.gap_sign).bound_of),
       dimension(static_cast<std::size_t>(kernel.dimension())),
       factor(Integer(4) * of.pattern.cells * of.pattern.cells, of.pattern.class_count()) {
+    const auto forms = static_cast<double>(of.rest.size() + of.greatest_proof.chain_bounds.size());
+    const double work = forms * (static_cast<double>(of.pattern.free_steps) + static_cast<double>(dimension));
+    if (work > most_work) {
+        invalid("size: expected at most " + std::to_string(static_cast<long>(most_work)) +
+                " steps and columns over all forms, got " + std::to_string(static_cast<long>(work)));
+    }
     const Eigen::VectorXi row = contact_row(kernel);
     contact.assign(row.data(), row.data() + row.size());
 }
 
-bool CertificateTerms::allows(std::size_t column, const Rational& value) const {
-    if (value == 0) return true;
-    const Sign sign = signs[column];
-    return sign == Sign::free || sign == (value > 0 ? Sign::nonnegative : Sign::nonpositive);
+bool CertificateTerms::allows(std::size_t column, int sign) const {
+    if (sign == 0) return true;
+    const Sign allowed = signs[column];
+    return allowed == Sign::free || allowed == (sign > 0 ? Sign::nonnegative : Sign::nonpositive);
 }
 
-CertificateTerms::Dense CertificateTerms::dense(const RationalVector& sparse, const char* what) const {
-    Dense result(dimension);
+Fractions CertificateTerms::dense(const RationalVector& sparse, const char* what) const {
+    Fractions result{std::vector<Integer>(dimension)};
     int last = -1;
     for (const auto& [column, value] : sparse) {
         if (column <= last || column >= static_cast<int>(dimension)) {
@@ -34,12 +59,17 @@ CertificateTerms::Dense CertificateTerms::dense(const RationalVector& sparse, co
                     std::to_string(column));
         }
         last = column;
-        result[static_cast<std::size_t>(column)] = value;
+        result.denominator = common_multiple(result.denominator, denominator(value));
+    }
+    for (const auto& [column, value] : sparse) {
+        result.numerators[static_cast<std::size_t>(column)] =
+            numerator(value) * (result.denominator / denominator(value));
     }
     return result;
 }
 
-CertificateTerms::Dense CertificateTerms::combine_rows(const RationalVector& rows) const {
+Fractions CertificateTerms::combine_rows(const RationalVector& rows) const {
+    Fractions result{std::vector<Integer>(dimension)};
     int last = 0;
     for (const auto& [n, y] : rows) {
         if (n <= last || n >= certificate.pattern.free_steps) {
@@ -48,37 +78,40 @@ CertificateTerms::Dense CertificateTerms::combine_rows(const RationalVector& row
         }
         if (y < 0) invalid("COND1 row " + std::to_string(n) + ": multiplier is negative");
         last = n;
+        result.denominator = common_multiple(result.denominator, denominator(y));
     }
-    Dense result(dimension);
-    Rational weight;
-    int end = rows.empty() ? 0 : rows.back().first;
-    for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
-        const int begin = std::next(row) == rows.rend() ? 0 : std::next(row)->first;
-        weight += row->second;
-        // Steps begin..end-1 all carry the same weight: count their signs first.
-        std::vector<int> count(dimension, 0);
-        for (int k = begin; k < end; ++k) {
-            const int column = kernel.column(k);
-            if (column >= 0) count[static_cast<std::size_t>(column)] += kernel.sign[static_cast<std::size_t>(k)];
-        }
-        for (std::size_t c = 0; c < dimension; ++c) {
-            if (count[c] != 0) result[c] += weight * count[c];
-        }
-        end = begin;
+    Integer weight;
+    auto row = rows.rbegin();
+    for (int k = last - 1; k >= 0; --k) {
+        for (; row != rows.rend() && row->first > k; ++row)
+            weight += numerator(row->second) * (result.denominator / denominator(row->second));
+        const int column = kernel.column(k);
+        if (column < 0) continue;
+        Integer& sum = result.numerators[static_cast<std::size_t>(column)];
+        if (kernel.sign[static_cast<std::size_t>(k)] > 0)
+            sum += weight;
+        else
+            sum -= weight;
     }
     return result;
 }
 
 Rational CertificateTerms::verified(const FormBound& bound) const {
-    const Dense form = dense(bound.form, "form");
-    const Dense rows = combine_rows(bound.proof.rows);
+    stop_point();
+    const Fractions form = dense(bound.form, "form");
+    const Fractions rows = combine_rows(bound.proof.rows);
+    const Rational& nu = bound.proof.contact;
+    const Integer common = common_multiple(common_multiple(form.denominator, rows.denominator), denominator(nu));
+    const Integer of_form = common / form.denominator;
+    const Integer of_rows = common / rows.denominator;
+    const Integer of_contact = numerator(nu) * (common / denominator(nu));
     for (std::size_t c = 0; c < dimension; ++c) {
-        const Rational rest = form[c] - rows[c] - bound.proof.contact * contact[c];
+        const Integer rest = form.numerators[c] * of_form - rows.numerators[c] * of_rows - of_contact * contact[c];
         // No allowed value may make the rest positive.
-        if (allows(c, rest) && rest != 0)
+        if (rest != 0 && allows(c, rest.sign()))
             invalid("bound: multipliers do not dominate " + column_name(static_cast<int>(c)));
     }
-    return bound.proof.contact * certificate.gap_sign;
+    return nu * certificate.gap_sign;
 }
 
 }  // namespace nsma

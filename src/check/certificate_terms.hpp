@@ -15,19 +15,29 @@ struct Invalid {
 [[noreturn]] void invalid(std::string reason);
 [[nodiscard]] std::string column_name(int column);
 
+/// Fractions over one denominator > 0.
+struct Fractions {
+    std::vector<Integer> numerators;
+    Integer denominator = 1;
+};
+
+/// The least common multiple of the two. Throws Invalid where it is longer than honest certificates need: sums over it
+/// would be as long, and a small forged line take minutes.
+[[nodiscard]] Integer common_multiple(const Integer& a, const Integer& b);
+
 /// What every part of a certificate is checked against: the pattern's signs and COND1-3, as integers, and exact sums of
-/// them. Its functions throw Invalid.
+/// them. Its functions throw Invalid, and Interrupted.
 struct CertificateTerms {
-    using Dense = std::vector<Rational>;
     using Sign = Conditions::Sign;
 
+    /// Throws Invalid where the certificate asks for more work than any honest one.
     explicit CertificateTerms(const Certificate& of);
 
-    /// Whether COND3 allows a value of this column.
-    [[nodiscard]] bool allows(std::size_t column, const Rational& value) const;
-    [[nodiscard]] Dense dense(const RationalVector& sparse, const char* what) const;
+    /// Whether COND3 allows a value of this sign (-1, 0, 1) in a column.
+    [[nodiscard]] bool allows(std::size_t column, int sign) const;
+    [[nodiscard]] Fractions dense(const RationalVector& sparse, const char* what) const;
     /// sum_n y_n a_n over the columns: step k carries the sum of y_n over n > k.
-    [[nodiscard]] Dense combine_rows(const RationalVector& rows) const;
+    [[nodiscard]] Fractions combine_rows(const RationalVector& rows) const;
     /// Proved upper bound of the form over the admissible set.
     [[nodiscard]] Rational verified(const FormBound& bound) const;
 

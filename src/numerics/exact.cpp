@@ -11,11 +11,11 @@ std::string to_string(const Rational& value) {
 }
 
 std::optional<Rational> parse_rational(const std::string& text, std::size_t digit_limit) {
-    if (text.empty() || text.size() > digit_limit + 2) return std::nullopt;
+    if (text.empty()) return std::nullopt;
     const std::size_t sign = text.front() == '-' ? 1 : 0;
     const auto slash = text.find('/');
     const auto digits = [&](std::size_t from, std::size_t to) -> std::optional<Integer> {
-        if (from >= to) return std::nullopt;
+        if (from >= to || to - from > digit_limit) return std::nullopt;
         const bool all = std::all_of(text.begin() + static_cast<std::ptrdiff_t>(from),
                                      text.begin() + static_cast<std::ptrdiff_t>(to),
                                      [](unsigned char c) { return c >= '0' && c <= '9'; });

@@ -9,6 +9,8 @@
 
 #include "solver.hpp"
 
+#include "nsma/numerics/interruption.hpp"
+
 namespace nsma {
 namespace {
 
@@ -170,7 +172,7 @@ public:
         iterations_ = iteration;
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
         timed_out_ = elapsed.count() > deadline_;  // wall time; Ipopt 3.11 only knows CPU time
-        return !timed_out_;
+        return !timed_out_ && !stop_requested();
     }
 
     void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*, const Number*, Index,
@@ -253,6 +255,7 @@ SolverOutcome IpoptSolver::solve(const Program& program, const Eigen::VectorXd& 
     auto* adapter = new Adapter(program, start, implementation_->options.time_limit);
     const Ipopt::SmartPtr<Ipopt::TNLP> owner(adapter);
     const auto status = implementation_->application->OptimizeTNLP(owner);
+    stop_point();
     SolverOutcome outcome;
     outcome.x = adapter->x();
     outcome.iterations = adapter->iterations();

@@ -9,6 +9,8 @@
 
 #include "solver.hpp"
 
+#include "nsma/numerics/interruption.hpp"
+
 namespace nsma {
 namespace {
 
@@ -29,7 +31,7 @@ struct Call {
     template <typename Evaluate>
     bool guard(const Evaluate& evaluate) {
         late = late || std::chrono::steady_clock::now() >= deadline;
-        if (late) optimiser.force_stop();
+        if (late || stop_requested()) optimiser.force_stop();
         try {
             evaluate();
             return true;
@@ -216,6 +218,7 @@ SolverOutcome solve_with_nlopt(NloptMethod method, const Program& program, const
     std::vector<double> x(inside.begin(), inside.end());
     SolverOutcome outcome;
     outcome.status = optimise(method, call, options, x);
+    stop_point();
     outcome.x = Point(x.data(), program.variables());
     outcome.iterations = call.evaluations;
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

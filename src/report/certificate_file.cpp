@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "nesting.hpp"
 #include "one_line.hpp"
 
 #include "nsma/report/input_error.hpp"
@@ -17,6 +18,7 @@ namespace {
 // Fields keep their order, so that equal certificates are equal bytes.
 using Json = nlohmann::ordered_json;
 constexpr int format_version = 2;
+constexpr int deepest = 16;  // brackets; those of a certificate go five deep
 constexpr std::array claim_names{"trivial", "empty", "nonempty"};  // by Claim
 
 // Visits the fields of a certificate in the order of the file.
@@ -72,11 +74,12 @@ public:
     }
 
     [[noreturn]] void fail(const std::string& expected, const Json& got, const char* key = nullptr) const {
-        std::string text = got.dump(-1, ' ', true, Json::error_handler_t::replace);
-        if (text.size() > 60) text = text.substr(0, 57) + "...";
+        std::string text = got.is_array()    ? "a list"
+                           : got.is_object() ? "an object"
+                                             : got.dump(-1, ' ', true, Json::error_handler_t::replace);
         // An unknown key may hold anything.
-        throw InputError(one_line(where_ + ": " + (key != nullptr ? std::string(key) + ": " : std::string()) +
-                                  "expected " + expected + ", got " + text));
+        throw InputError(one_line(where_ + ": " + (key != nullptr ? shortened(key) + ": " : std::string()) +
+                                  "expected " + expected + ", got " + shortened(std::move(text))));
     }
 
     void operator()(const char* key, int& value) { read(required(key), key, value); }
@@ -169,6 +172,10 @@ std::string certificate_json(const Certificate& certificate) {
 }
 
 Certificate parse_certificate(std::string_view text, const std::string& where) {
+    if (const auto place = too_deep(text, deepest)) {
+        throw InputError(where + ": expected brackets at most " + std::to_string(deepest) +
+                         " deep, got more at byte " + std::to_string(*place + 1));
+    }
     const Json json = Json::parse(text, nullptr, false);
     if (json.is_discarded()) {
         throw InputError(where + ": expected one JSON object a line, got something else");

@@ -1,4 +1,3 @@
-#include <cerrno>
 #include <cstdio>
 #include <fstream>
 
@@ -14,16 +13,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_file(const fs::path& path, const std::string& text) {
-    errno = 0;
-    std::ofstream file(path, std::ios::binary);
-    if (!(file << text) || !file.flush()) fail_errno(path);
-}
-
 std::string shell_quoted(const fs::path& path) {
     std::string quoted = "'";
     for (const char letter : path.string()) quoted += letter == '\'' ? "'\\''" : std::string(1, letter);
     return quoted + "'";
+}
+
+/// Whether a picture has the end that its format asks for: gnuplot does not say when the disk is full.
+bool whole(const fs::path& picture) {
+    std::ifstream file(picture, std::ios::binary);
+    constexpr int tail = 16;
+    file.seekg(-tail, std::ios::end);
+    std::string end(tail, '\0');
+    return file.read(end.data(), tail) && end.find(picture.extension() == ".svg" ? "</svg>" : "IEND") != std::string::npos;
 }
 
 /// Runs `gnuplot NAME.gp` in the folder; returns whether it succeeded and what it said.
@@ -45,18 +47,16 @@ std::pair<bool, std::string> run_gnuplot(const std::string& script, const fs::pa
 }  // namespace
 
 void draw_chart(const Chart& chart, const fs::path& folder) {
+    make_folder(folder);
     std::error_code code;
-    fs::create_directories(folder, code);
-    if (code) fail(folder, "cannot be made: " + code.message());
     const std::string script = chart.name + ".gp";
-    write_file(folder / (chart.name + ".dat"), chart.data);
-    write_file(folder / script, gnuplot_script(chart));
+    write_whole(folder / (chart.name + ".dat"), chart.data);
+    write_whole(folder / script, gnuplot_script(chart));
     for (const char* format : {".svg", ".png"}) fs::remove(folder / (chart.name + format), code);
 
     auto [drawn, said] = run_gnuplot(script, folder);
     for (const char* format : {".svg", ".png"}) {
-        const auto size = fs::file_size(folder / (chart.name + format), code);
-        drawn = drawn && !code && size > 0;
+        drawn = drawn && whole(folder / (chart.name + format));
     }
     if (drawn) return;
     if (said.size() > 300) said = "..." + said.substr(said.size() - 300);

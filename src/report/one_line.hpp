@@ -12,4 +12,12 @@ namespace nsma {
     return text;
 }
 
+/// What a message shows of a text that may be of any length.
+[[nodiscard]] inline std::string shortened(std::string text, std::size_t shown = 60) {
+    if (text.size() <= shown) return text;
+    std::size_t end = shown - 3;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80) --end;  // no half letter
+    return text.replace(end, std::string::npos, "...");
+}
+
 }  // namespace nsma

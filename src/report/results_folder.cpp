@@ -3,15 +3,13 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <random>
 #include <stdexcept>
 #include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "input_file.hpp"
 #include "one_line.hpp"
 #include "nsma/report/input_error.hpp"
 
@@ -53,43 +51,27 @@ void write_whole(const fs::path& file, std::string_view text) {
     part.put_in_place();
 }
 
-namespace {
-
-// The scene of a folder that has none, unless another process gives it one at the same time.
-void write_scene(const fs::path& copy, const std::string& text) {
-    const fs::path own = fmt::format("{}.{:x}", copy.string(), std::random_device()());
-    write_whole(own, text);
-    std::error_code code;
-    fs::create_hard_link(own, copy, code);  // unlike a renaming, never over another's
-    std::error_code unused;
-    if (code && !fs::exists(copy, unused)) {
-        fs::rename(own, copy, code);  // a file system without links
-        if (code) fail(copy, fmt::format("cannot be written: {}", code.message()));
-    }
-    fs::remove(own, code);
-}
-
-}  // namespace
-
-void prepare_results_folder(const fs::path& folder, const Scene& scene, std::span<const char* const> files) {
-    if (scene.text.empty()) throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
+void make_folder(const fs::path& folder) {
     std::error_code code;
     if (fs::exists(folder, code) && !fs::is_directory(folder, code)) fail(folder, "expected a folder, got a file");
     fs::create_directories(folder, code);
     if (code) fail(folder, fmt::format("cannot be made: {}", code.message()));
+}
 
+void prepare_results_folder(const fs::path& folder, const Scene& scene, std::span<const char* const> files) {
+    if (scene.text.empty()) throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
+    make_folder(folder);
     const fs::path copy = folder / "scene.toml";
+    std::error_code code;
     if (!fs::exists(copy, code)) {
+        if (code) fail(copy, fmt::format("cannot be read: {}", code.message()));
         for (const char* file : files) {
-            if (fs::exists(folder / file, code) && !fs::exists(copy, code)) {
+            if (fs::exists(folder / file, code)) {
                 fail(folder / file, "is in the way: the folder has no scene.toml that would tell its scene");
             }
         }
-        write_scene(copy, scene.text);
-    }
-    std::ifstream stream(copy, std::ios::binary);
-    if (!stream) fail(copy, fmt::format("cannot be read: {}", std::strerror(errno)));
-    if (std::string(std::istreambuf_iterator<char>(stream), {}) != scene.text) {
+        write_whole(copy, scene.text);
+    } else if (InputFile(copy, "the scene of the folder").text(max_scene_bytes) != scene.text) {
         fail(folder,
              "holds results of another scene (its scene.toml differs); choose another folder "
              "or remove it");

@@ -40,6 +40,12 @@ private:
 /// Writes a file so that it is there whole or not at all.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
+/// Makes a folder where there is none. Throws InputError where that cannot be done or a file has the name.
+void make_folder(const std::filesystem::path& folder);
+
+/// Bytes of the longest scene file.
+inline constexpr std::size_t max_scene_bytes = 16u << 20;
+
 /// Makes the folder of a study and keeps a copy of its scene there. Throws InputError where it holds the results of
 /// another scene or, without a scene, one of `files`; std::invalid_argument on a scene without text.
 void prepare_results_folder(const std::filesystem::path& folder, const Scene& scene,

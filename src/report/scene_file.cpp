@@ -2,37 +2,43 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "input_file.hpp"
+#include "nesting.hpp"
 #include "one_line.hpp"
+#include "results_folder.hpp"
 
 namespace nsma {
 namespace {
 
-constexpr std::size_t max_scene_bytes = 16u << 20;
 constexpr long max_levels = 1'000'000;
+constexpr int deepest = 16;  // brackets, or parts of a key; those of a scene go two deep
 constexpr const char* positive_number = "a finite number > 0";
 
 using Keys = std::vector<std::string_view>;
 
+struct SceneText {
+    std::string where;                    ///< the file, in messages
+    std::vector<std::string_view> lines;  ///< as written
+};
+
 /// A value of the file, or the place where it is missing; every failure leaves as one InputError.
 class SceneValue {
 public:
-    SceneValue(const std::string& where, std::string key, const toml::node& node)
-        : where_(&where), key_(std::move(key)), node_(&node) {}
+    SceneValue(const SceneText& text, std::string key, const toml::node& node)
+        : text_(&text), key_(std::move(key)), node_(&node) {}
 
     [[noreturn]] void fail(std::string_view expected, std::string_view got) const {
         const auto line = node_->source().begin.line;
-        const std::string place = line == 0 ? *where_ : fmt::format("{}:{}", *where_, line);
-        throw InputError(one_line(fmt::format("{}: {}: expected {}, got {}", place, key_, expected, got)));
+        const std::string& file = text_->where;
+        const std::string place = line == 0 ? file : fmt::format("{}:{}", file, line);
+        throw InputError(one_line(fmt::format("{}: {}: expected {}, got {}", place, shortened(key_), expected, got)));
     }
     [[noreturn]] void fail(std::string_view expected) const { fail(expected, description()); }
 
@@ -42,7 +48,7 @@ public:
     /// A value of this table.
     [[nodiscard]] SceneValue operator[](std::string_view key) const {
         const toml::node* node = node_->as_table()->get(key);
-        SceneValue value(*where_, key_.empty() ? std::string(key) : fmt::format("{}.{}", key_, key),
+        SceneValue value(*text_, key_.empty() ? std::string(key) : fmt::format("{}.{}", key_, key),
                          node != nullptr ? *node : *node_);
         value.missing_ = node == nullptr;
         return value;
@@ -65,10 +71,17 @@ public:
         double value = std::nan("");
         if (const auto* real = node_->as_floating_point()) value = real->get();
         if (const auto* whole = node_->as_integer()) value = static_cast<double>(whole->get());
+        if (value == 0 && !is_written_zero()) fail(expected, "one that is too small for a number");
         if (!std::isfinite(value) || !(value > greater_than)) fail(expected);
         return value;
     }
     [[nodiscard]] double positive() const { return number(positive_number, 0.0); }
+    /// A number > 0 within these bounds.
+    [[nodiscard]] double within(double lo, double hi) const {
+        const double value = positive();
+        if (value < lo || value > hi) fail(fmt::format("a number from {:g} to {:g}", lo, hi));
+        return value;
+    }
 
     [[nodiscard]] long integer(long lo, long hi) const {
         return integer(lo, hi, fmt::format("an integer from {} to {}", lo, hi));
@@ -98,7 +111,7 @@ public:
         const auto* array = node_->as_array();
         if (array == nullptr || array->empty() || (size > 0 && array->size() != size)) fail(expected);
         std::vector<SceneValue> entries;
-        for (const toml::node& entry : *array) entries.emplace_back(*where_, key_, entry);
+        for (const toml::node& entry : *array) entries.emplace_back(*text_, key_, entry);
         return entries;
     }
     [[nodiscard]] std::array<double, 2> range() const {
@@ -111,12 +124,18 @@ public:
     }
 
 private:
+    // The library reads 1e-400 as zero; no digit but 0 stands before the exponent of a zero.
+    [[nodiscard]] bool is_written_zero() const {
+        const toml::source_region& source = node_->source();
+        if (source.begin.line == 0 || source.begin.line > text_->lines.size()) return true;
+        const std::string_view line = text_->lines[source.begin.line - 1];
+        const std::string_view from = line.substr(std::min<std::size_t>(source.begin.column - 1, line.size()));
+        const std::size_t end = std::min(from.find_first_not_of("+-_.0123456789"), from.size());
+        return from.substr(0, end).find_first_of("123456789") == std::string_view::npos;
+    }
     [[nodiscard]] std::string description() const {
         if (missing_) return "nothing: the key is missing";
-        if (const auto* text = node_->as_string()) {
-            const std::string& value = text->get();
-            return value.size() > 60 ? fmt::format("\"{}...\"", value.substr(0, 60)) : fmt::format("\"{}\"", value);
-        }
+        if (const auto* text = node_->as_string()) return fmt::format("\"{}\"", shortened(text->get()));
         if (const auto* number = node_->as_integer()) return fmt::format("{}", number->get());
         if (const auto* number = node_->as_floating_point()) return fmt::format("{}", number->get());
         if (const auto* flag = node_->as_boolean()) return flag->get() ? "true" : "false";
@@ -125,7 +144,7 @@ private:
         return "a date or time";
     }
 
-    const std::string* where_;
+    const SceneText* text_;
     std::string key_;  ///< with its table, "bar.gap"
     const toml::node* node_;
     bool missing_ = false;  ///< then the node is the table without it
@@ -134,15 +153,14 @@ private:
 Bar read_bar(const SceneValue& root) {
     const SceneValue section = root.section("bar", {"length", "young_modulus", "density", "area", "gap"});
     Bar bar;
-    bar.length = section["length"].positive();
-    bar.young_modulus = section["young_modulus"].positive();
-    bar.density = section["density"].positive();
-    bar.area = section["area"].positive();
-    bar.gap = section["gap"].number("a finite number", -std::numeric_limits<double>::infinity());
+    for (const BarQuantity& quantity : bar_quantities)
+        bar.*quantity.value = section[quantity.name].within(quantity.least, quantity.greatest);
+    const SceneValue gap = section["gap"];
+    bar.gap = gap.number("a finite number", -std::numeric_limits<double>::infinity());
     try {
         validate(bar);
-    } catch (const std::invalid_argument& error) {
-        section.fail("derived quantities that are finite and > 0", error.what());
+    } catch (const std::invalid_argument&) {
+        gap.fail(gap_expected());
     }
     return bar;
 }
@@ -207,11 +225,12 @@ std::vector<double> read_levels(const SceneValue& section) {
     if (const SceneValue list = section["list"]; !list.missing()) {
         if (section.size() != 1) section.fail(either, "both");
         std::vector<double> levels;
-        for (const SceneValue& entry : list.list("a list of finite numbers > 0")) levels.push_back(entry.positive());
+        for (const SceneValue& entry : list.list("a list of finite numbers > 0"))
+            levels.push_back(entry.within(least_level, greatest_level));
         return levels;
     }
-    const double from = section["from"].positive();
-    const double to = section["to"].positive();
+    const double from = section["from"].within(least_level, greatest_level);
+    const double to = section["to"].within(least_level, greatest_level);
     const SceneValue count_value = section["count"];
     const long count = count_value.integer(1, max_levels);
     const bool linear = section["spacing"].is_second("log", "linear");
@@ -234,14 +253,25 @@ Scene parse_scene(std::string_view text, const std::string& where) {
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
         throw InputError(one_line(fmt::format("{}: expected a scene, got an empty file", where)));
     }
+    if (const auto place = too_deep(text, deepest)) {
+        const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(*place), '\n');
+        throw InputError(one_line(fmt::format("{}:{}: expected brackets and keys at most {} deep, got more", where,
+                                              line, deepest)));
+    }
     toml::table table;
     try {
         table = toml::parse(text, std::string_view(where));
     } catch (const toml::parse_error& error) {
         throw InputError(one_line(fmt::format("{}:{}: expected TOML, got a syntax error: {}", where,
-                                              error.source().begin.line, error.description())));
+                                              error.source().begin.line, shortened(std::string(error.description()), 200))));
     }
-    const SceneValue root(where, "", table);
+    SceneText source{where, {}};
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        source.lines.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    const SceneValue root(source, "", table);
     root.refuse_all_but({"title", "bar", "mesh", "patterns", "levels", "program"});
     Scene scene;
     scene.title = root["title"].text("one line of text");
@@ -258,19 +288,7 @@ Scene parse_scene(std::string_view text, const std::string& where) {
 }
 
 Scene read_scene(const std::filesystem::path& file) {
-    const std::string where = file.string();
-    const auto refuse = [&where](const std::string& what) { throw InputError(one_line(where + ": " + what)); };
-    std::error_code code;
-    if (std::filesystem::is_directory(file, code)) refuse("expected a scene file, got a directory");
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
-    std::string text(max_scene_bytes + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (stream.bad()) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > max_scene_bytes) refuse(fmt::format("expected at most {} bytes, got more", max_scene_bytes));
-    return parse_scene(text, where);
+    return parse_scene(InputFile(file, "a scene file").text(max_scene_bytes), file.string());
 }
 
 }  // namespace nsma

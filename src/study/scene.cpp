@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "nsma/orbit/backbone.hpp"
 
 namespace nsma {
@@ -17,27 +19,30 @@ constexpr double bound_rounding = 1e-9;
 int first_step(double ratio, int cells) { return static_cast<int>(std::ceil(ratio * cells - bound_rounding)); }
 int last_step(double ratio, int cells) { return static_cast<int>(std::floor(ratio * cells + bound_rounding)); }
 
-struct Visit {
+PatternRange range_of(const PeriodSelection& selection, int cells) {
+    if (!(std::abs(selection.period[1]) * cells <= max_period_steps)) {
+        throw std::invalid_argument("period: expected at most " + std::to_string(max_period_steps) + " steps, got " +
+                                    std::to_string(selection.period[1] * cells));
+    }
+    PatternRange range;
+    range.period_lo = std::max(2, first_step(selection.period[0], cells));
+    range.period_hi = last_step(selection.period[1], cells);
+    if (selection.contact) {
+        range.contact_lo = std::max(1, first_step((*selection.contact)[0], cells));
+        range.contact_hi =
+            std::min(range.period_hi, last_step(std::min((*selection.contact)[1], selection.period[1]), cells));
+    }
+    return range;
+}
+
+struct Patterns {
     const Scene& scene;
 
     std::vector<Pattern> operator()(const ModeSelection& selection) const {
         return mode_patterns(selection.mode, scene.mesh.cells, scene.bar.gap_sign());
     }
     std::vector<Pattern> operator()(const PeriodSelection& selection) const {
-        const int cells = scene.mesh.cells;
-        if (!(std::abs(selection.period[1]) * cells < max_period_steps)) {
-            throw std::invalid_argument("period: expected at most " + std::to_string(max_period_steps) +
-                                        " steps, got " + std::to_string(selection.period[1] * cells));
-        }
-        PatternRange range;
-        range.period_lo = std::max(2, first_step(selection.period[0], cells));
-        range.period_hi = last_step(selection.period[1], cells);
-        if (selection.contact) {
-            range.contact_lo = std::max(1, first_step((*selection.contact)[0], cells));
-            range.contact_hi =
-                std::min(range.period_hi, last_step(std::min((*selection.contact)[1], selection.period[1]), cells));
-        }
-        return patterns_in(cells, range);
+        return patterns_in(scene.mesh.cells, range_of(selection, scene.mesh.cells));
     }
     std::vector<Pattern> operator()(const ListSelection& selection) const {
         std::vector<Pattern> patterns;
@@ -48,8 +53,42 @@ struct Visit {
     }
 };
 
+// How many there are, without listing them.
+struct Count {
+    const Scene& scene;
+
+    std::int64_t operator()(const ModeSelection& selection) const {
+        return static_cast<std::int64_t>(Patterns{scene}(selection).size());  // at most two a cell
+    }
+    std::int64_t operator()(const PeriodSelection& selection) const {
+        const PatternRange range = range_of(selection, scene.mesh.cells);
+        std::int64_t count = 0;
+        for (int period = std::max(range.period_lo, 2); period <= range.period_hi; ++period)
+            count += std::max(0, std::min(range.contact_hi, period - 1) - std::max(range.contact_lo, 1) + 1);
+        return count;
+    }
+    std::int64_t operator()(const ListSelection& selection) const {
+        return static_cast<std::int64_t>(selection.steps.size());
+    }
+};
+
 }  // namespace
 
-std::vector<Pattern> patterns_of(const Scene& scene) { return std::visit(Visit{scene}, scene.patterns); }
+void expect_feasible(const Scene& scene) {
+    const std::int64_t patterns = std::visit(Count{scene}, scene.patterns);
+    if (patterns > max_patterns) {
+        throw std::invalid_argument(
+            fmt::format("patterns: expected at most {}, got {}: fewer cells, shorter periods or fewer contact durations "
+                        "make fewer",
+                        max_patterns, patterns));
+    }
+    const auto levels = static_cast<std::int64_t>(scene.levels.size());
+    if (patterns * levels > max_pattern_levels) {
+        throw std::invalid_argument(fmt::format("levels: expected at most {} over all patterns, got {}",
+                                                max_pattern_levels, patterns * levels));
+    }
+}
+
+std::vector<Pattern> patterns_of(const Scene& scene) { return std::visit(Patterns{scene}, scene.patterns); }
 
 }  // namespace nsma

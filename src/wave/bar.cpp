@@ -26,25 +26,18 @@ double Bar::energy_unit() const { return gap != 0.0 ? 0.5 * young_modulus * area
 
 double Bar::force_unit() const { return young_modulus * area * displacement_unit() / length; }
 
+std::string gap_expected() { return fmt::format("0 or a size from {:g} to {:g}", least_gap, greatest_gap); }
+
 void validate(const Bar& bar) {
-    const auto require_positive = [](const char* name, double value) {
-        if (!std::isfinite(value) || value <= 0.0) {
-            throw std::invalid_argument(fmt::format("{}: expected a finite value > 0, got {}", name, value));
-        }
-    };
-    require_positive("length", bar.length);
-    require_positive("young_modulus", bar.young_modulus);
-    require_positive("density", bar.density);
-    require_positive("area", bar.area);
-    if (!std::isfinite(bar.gap)) {
-        throw std::invalid_argument(fmt::format("gap: expected a finite value, got {}", bar.gap));
+    for (const BarQuantity& quantity : bar_quantities) {
+        const double value = bar.*quantity.value;
+        if (value >= quantity.least && value <= quantity.greatest) continue;
+        throw std::invalid_argument(fmt::format("{}: expected a number from {:g} to {:g}, got {}", quantity.name,
+                                                quantity.least, quantity.greatest, value));
     }
-    require_positive("wave_speed", bar.wave_speed());
-    require_positive("impedance", bar.impedance());
-    require_positive("travel_time", bar.travel_time());
-    require_positive("displacement_unit", bar.displacement_unit());
-    require_positive("energy_unit", bar.energy_unit());
-    require_positive("force_unit", bar.force_unit());
+    if (bar.gap == 0.0) return;
+    if (!(std::abs(bar.gap) >= least_gap && std::abs(bar.gap) <= greatest_gap))
+        throw std::invalid_argument(fmt::format("gap: expected {}, got {}", gap_expected(), bar.gap));
 }
 
 }  // namespace nsma

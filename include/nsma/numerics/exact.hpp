@@ -21,8 +21,8 @@ using RationalVector = std::vector<std::pair<int, Rational>>;
 [[nodiscard]] std::string to_string(const Rational& value);
 
 /// Reads an optional minus sign, digits and optionally "/digits" (not zero); absent on anything else
-/// or on much more than `digit_limit` characters.
-[[nodiscard]] std::optional<Rational> parse_rational(const std::string& text, std::size_t digit_limit = 20'000);
+/// or where either part has more than `digit_limit` digits.
+[[nodiscard]] std::optional<Rational> parse_rational(const std::string& text, std::size_t digit_limit = 256);
 
 /// Nearest double; overflows to infinity.
 [[nodiscard]] double to_double(const Rational& value);

@@ -23,7 +23,7 @@ struct Pattern {
 /// and n_T <= max_period_steps.
 void validate(const Pattern& pattern);
 
-inline constexpr int max_period_steps = 100'000'000;
+inline constexpr int max_period_steps = 10'000'000;
 
 /// m = dim ker S_T in closed form, O(log N): with q = floor(r/g), s = r mod g,
 /// m = g - s for even q and s for odd q. Source: [1] Eq. (4), solved by cycles.

@@ -9,6 +9,10 @@
 
 namespace nsma {
 
+/// Levels beyond these are no energies of a bar, and what is computed from them would leave the range of numbers.
+inline constexpr double least_level = 1e-30;
+inline constexpr double greatest_level = 1e30;
+
 /// Reads and checks a scene file (TOML, SI units). Every key is required unless the README says
 /// otherwise; unknown, missing, mistyped or out-of-range keys throw InputError naming file,
 /// line and key.

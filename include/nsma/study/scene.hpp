@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,6 +46,12 @@ struct Scene {
 [[nodiscard]] inline bool is_solved(bool all_kinds, const std::optional<PatternKind>& kind) {
     return kind && (all_kinds || *kind == PatternKind::contact);
 }
+
+/// Patterns of one scene, and levels over all of them: what memory holds in any case.
+inline constexpr std::int64_t max_patterns = 10'000'000;
+inline constexpr std::int64_t max_pattern_levels = 1'000'000'000;
+/// Throws std::invalid_argument (name, expected, got) where a scene, checked otherwise, asks for more.
+void expect_feasible(const Scene& scene);
 
 /// The patterns of a scene on its mesh, those of trivial kernel included, ordered by n_T then r
 /// (a list keeps its order).

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <string>
+
 namespace nsma {
 
 /// Uniform bar, fixed at s = 0; its end s = L faces a rigid wall across the gap d.
@@ -29,8 +32,25 @@ struct Bar {
     [[nodiscard]] double force_unit() const;
 };
 
-/// Throws std::invalid_argument (name, expected, got) unless every quantity is finite, the
-/// first four are > 0 and the derived quantities above are finite and > 0.
+/// What a quantity of a bar may be, in SI units: more than any bar has, and little enough for all that is computed from
+/// it to be a number.
+struct BarQuantity {
+    const char* name;
+    double Bar::*value;
+    double least;
+    double greatest;
+};
+inline constexpr std::array<BarQuantity, 4> bar_quantities{{{"length", &Bar::length, 1e-9, 1e6},
+                                                            {"young_modulus", &Bar::young_modulus, 1e-3, 1e15},
+                                                            {"density", &Bar::density, 1e-3, 1e9},
+                                                            {"area", &Bar::area, 1e-18, 1e6}}};
+/// Of a gap that is not zero the size.
+inline constexpr double least_gap = 1e-15;
+inline constexpr double greatest_gap = 1e6;
+/// What a gap is expected to be, in words.
+[[nodiscard]] std::string gap_expected();
+
+/// Throws std::invalid_argument (name, expected, got) unless every quantity is within its bounds.
 void validate(const Bar& bar);
 
 }  // namespace nsma

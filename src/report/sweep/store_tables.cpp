@@ -12,6 +12,14 @@ std::vector<std::string> names_of() {
     return names;
 }
 
+// With the checksum of the whole result behind them.
+template <class Record>
+std::vector<std::string> summed() {
+    std::vector<std::string> names = names_of<Record>();
+    names.emplace_back("checksum");
+    return names;
+}
+
 }  // namespace
 
 std::string StoreTable::create_sql() const {
@@ -25,8 +33,8 @@ std::string StoreTable::insert_sql() const {
 }
 
 const std::array<StoreTable, 4>& store_tables() {
-    static const std::array<StoreTable, 4> tables{{{"patterns", {"number"}, names_of<PatternRecord>()},
-                                                   {"answers", {"pattern", "place"}, names_of<OrbitAnswer>()},
+    static const std::array<StoreTable, 4> tables{{{"patterns", {"number"}, summed<PatternRecord>()},
+                                                   {"answers", {"pattern", "place"}, summed<OrbitAnswer>()},
                                                    {"solves", {"pattern", "place", "run"}, names_of<SolverRun>()},
                                                    {"orbits", {"pattern", "place"}, {"beta"}}}};
     return tables;

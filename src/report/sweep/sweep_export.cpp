@@ -64,11 +64,6 @@ Exported export_sweep(const SweepStore& store, const fs::path& folder, bool dist
 }
 
 StoredSweep read_sweep_folder(const fs::path& folder) {
-    std::error_code code;
-    if (!fs::is_directory(folder, code)) {
-        fail(folder,
-             fmt::format("expected the folder of a sweep, got {}", fs::exists(folder, code) ? "a file" : "nothing"));
-    }
     const SweepStore store(folder);
     StoredSweep sweep;
     sweep.scene = store.scene();

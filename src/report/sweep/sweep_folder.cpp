@@ -57,6 +57,19 @@ fs::path prepare_sweep_folder(const fs::path& folder, const Scene& scene) {
     return folder;
 }
 
+void expect_sweep_folder(const fs::path& folder) {
+    std::error_code code;
+    if (!fs::is_directory(folder, code)) {
+        fail(folder,
+             fmt::format("expected the folder of a sweep, got {}", fs::exists(folder, code) ? "a file" : "nothing"));
+    }
+    for (const char* store : {"results.sqlite", "results.sqlite.part"}) {
+        if (fs::exists(folder / store, code)) return;
+        if (code) fail(folder / store, fmt::format("cannot be read: {}", code.message()));
+    }
+    fail(folder, "expected the folder of a sweep, got one without results.sqlite");
+}
+
 SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)
     : folder_(prepare_sweep_folder(folder, scene)),
       bar_(scene.bar),

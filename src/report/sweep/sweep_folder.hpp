@@ -18,6 +18,9 @@ inline constexpr std::array<const char*, 6> sweep_files{"patterns.csv", "levels.
 /// the scene file as read. Returns the folder.
 std::filesystem::path prepare_sweep_folder(const std::filesystem::path& folder, const Scene& scene);
 
+/// Throws InputError unless there is such a folder, readable and with the results of a sweep.
+void expect_sweep_folder(const std::filesystem::path& folder);
+
 /// Writes the tables of a sweep into its prepared folder, row by row. All files are complete and take their names in
 /// finish(). Throws InputError (one line) when the folder cannot be made or written, or holds another scene's results.
 class SweepFolder {

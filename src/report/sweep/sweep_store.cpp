@@ -1,9 +1,8 @@
 #include "sweep_store.hpp"
 
-#include <chrono>
-#include <cstdlib>
+#include <bit>
+#include <charconv>
 #include <optional>
-#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "store_tables.hpp"
 #include "sweep_folder.hpp"
 #include "orbit/fnv_hash.hpp"
+#include "nsma/orbit/replay.hpp"
 #include "nsma/report/scene_file.hpp"
 
 namespace nsma {
@@ -22,12 +22,50 @@ namespace fs = std::filesystem;
 constexpr const char* final_name = "results.sqlite";
 constexpr const char* part_name = "results.sqlite.part";
 // Raised with every change of the tables below, or of what a level's answer follows from.
-constexpr const char* format = "3";
+constexpr const char* format = "4";
+
+void add(FnvHash& hash, const std::string& text) {
+    hash.add(text.size());
+    for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
+}
 
 std::string hash_of(const std::string& text) {
     FnvHash hash;
     for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
     return fmt::format("{:016x}", hash.value());
+}
+
+void add(FnvHash& hash, const RecordRow& row) {
+    hash.add(row.size());
+    for (const FieldValue& value : row) {
+        const auto* truth = std::get_if<bool>(&value);
+        const FieldValue stored = truth != nullptr ? FieldValue(std::int64_t{*truth}) : value;  // as SQLite has it
+        hash.add(stored.index());
+        if (const auto* whole = std::get_if<std::int64_t>(&stored)) hash.add(static_cast<std::uint64_t>(*whole));
+        if (const auto* real = std::get_if<double>(&value)) hash.add(std::bit_cast<std::uint64_t>(*real));
+        if (const auto* text = std::get_if<std::string>(&value)) add(hash, *text);
+    }
+}
+
+// Of a result with everything that belongs to it, so that no row of it can be lost or changed unseen.
+std::int64_t checksum(const ResultRows& rows, const std::string& beta) {
+    FnvHash hash;
+    hash.add(static_cast<std::uint64_t>(rows.pattern));
+    hash.add(static_cast<std::uint64_t>(rows.place));
+    add(hash, rows.record);
+    for (const RecordRow& run : rows.runs) add(hash, run);
+    add(hash, beta);
+    return static_cast<std::int64_t>(hash.value());
+}
+
+// Throws std::invalid_argument where the parts of a result contradict each other or its orbit is none.
+void judge(const WorkResult& result) {
+    if (!result.answer) return;
+    const OrbitAnswer& answer = *result.answer;
+    if ((answer.verdict == Verdict::admissible) != answer.orbit.has_value())
+        throw std::invalid_argument("verdict: expected an orbit where it is admissible, and only there");
+    if (answer.orbit && !replay(*answer.orbit, answer.level).accepted)
+        throw std::invalid_argument("beta: expected an orbit, got one that its replay refuses");
 }
 
 }  // namespace
@@ -50,44 +88,73 @@ struct SweepStore::Implementation {
         } catch (const DatabaseError& error) {
             if (error.locked()) fail(file, "is in use by another process");
             fail(file, fmt::format("cannot be {}: {}", doing, error.what()));
-        } catch (const std::invalid_argument& error) {
-            fail(file, fmt::format("cannot be {}: {}", doing, error.what()));
-        } catch (const nlohmann::json::exception& error) {
-            fail(file, fmt::format("cannot be {}: beta: {}", doing, error.what()));
         }
     }
 
     void open(const fs::path& path, bool write) {
         file = path;
         guarded("opened", [&] {
-            // A process that just ended may still be letting go of the file, and SQLite takes an exclusive lock of a
-            // journal without waiting.
-            constexpr int tries = 60;
-            constexpr std::chrono::milliseconds pause{50};
-            for (int i = 1;; ++i) {
-                try {
-                    database = std::make_unique<Database>(file, write);
-                    return;
-                } catch (const DatabaseError& error) {
-                    if (i == tries || !error.locked()) throw;
-                    std::this_thread::sleep_for(pause);
-                }
-            }
+            database = std::make_unique<Database>(file, write);
         });
     }
 
-    [[nodiscard]] std::string info(const char* key) const {
+    // Before anything is believed of a store that was there.
+    void expect_sound() const {
+        const std::string said = guarded("read", [&] {
+            DatabaseStatement query(*database, "PRAGMA integrity_check(1)");
+            query.select({});
+            return query.step() ? query.text(0) : std::string("no answer");
+        });
+        if (said != "ok") damaged("file", said);
+    }
+
+    [[noreturn]] void damaged(const std::string& where, const std::string& what) const {
+        fail(file, fmt::format("is damaged: {}: {}", where, what));
+    }
+
+    [[nodiscard]] std::string info(const std::string& key) const {
         return guarded("read", [&] {
-            DatabaseStatement query(*database, "SELECT value FROM sweep WHERE key = ?");
+            DatabaseStatement query(*database, "SELECT value, checksum FROM sweep WHERE key = ?");
             query.select({}, {key});
-            return query.step() ? query.text(0) : std::string();
+            const RecordRow row = query.step() ? query.row(0) : RecordRow();
+            const std::string* value = row.empty() ? nullptr : std::get_if<std::string>(row.data());
+            if (value == nullptr || row[1] != FieldValue(hash_of(key + "=" + *value)))
+                damaged("table sweep, key " + key, "expected its value and checksum as written, got others");
+            return *value;
         });
     }
 
-    void set_info(const char* key, const std::string& value) {
+    // Of whatever version wrote it.
+    [[nodiscard]] std::string stored_format() const {
+        return guarded("read", [&] {
+            DatabaseStatement query(*database, "SELECT value FROM sweep WHERE key = 'format'");
+            query.select({});
+            return query.step() ? query.text(0) : std::string("none");
+        });
+    }
+
+    void set_info(const std::string& key, const std::string& value) {
         guarded("written", [&] {
-            DatabaseStatement(*database, "INSERT OR REPLACE INTO sweep (key, value) VALUES (?, ?)")
-                .insert({}, {key, value});
+            DatabaseStatement(*database, "INSERT OR REPLACE INTO sweep (key, value, checksum) VALUES (?, ?, ?)")
+                .insert({}, {key, value, hash_of(key + "=" + value)});
+        });
+    }
+
+    [[nodiscard]] double seconds() const {
+        const std::string text = info("seconds");
+        double value = 0;
+        std::from_chars(text.data(), text.data() + text.size(), value);
+        return value;
+    }
+
+    // How many results there are: known once the sweep is complete.
+    [[nodiscard]] std::string count_results() const {
+        return guarded("read", [&] {
+            DatabaseStatement query(*database,
+                                    "SELECT (SELECT count(*) FROM patterns) || ' patterns, ' ||"
+                                    " (SELECT count(*) FROM answers) || ' answers'");
+            query.select({});
+            return query.step() ? query.text(0) : std::string();
         });
     }
 
@@ -103,7 +170,7 @@ struct SweepStore::Implementation {
                 for (const StoreTable& table : store_tables()) {
                     database->execute(fmt::format("DROP TABLE IF EXISTS {}", table.name));
                 }
-                database->execute("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID");
+                database->execute("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT, checksum TEXT) WITHOUT ROWID");
                 for (const StoreTable& table : store_tables()) database->execute(table.create_sql());
                 database->execute(timings_view_sql);
                 for (const auto& [key, value] : {std::pair<const char*, std::string>{"format", format},
@@ -114,6 +181,7 @@ struct SweepStore::Implementation {
                                                  {"options", versions.options},
                                                  {"kinds", scene.all_kinds ? "all" : "contact"},
                                                  {"complete", "0"},
+                                                 {"results", ""},
                                                  {"seconds", "0"}}) {
                     set_info(key, value);
                 }
@@ -126,7 +194,7 @@ struct SweepStore::Implementation {
             fail(file, fmt::format("{}: expected {}, got a store of {}; choose another folder or run without --resume",
                                    what, now, stored));
         };
-        if (info("format") != format) refuse("format of the store", info("format"), format);
+        if (stored_format() != format) refuse("format of the store", stored_format(), format);
         if (info("scene") != scene.text) {
             fail(file,
                  fmt::format("holds results of another scene (hash {}, not {}); choose another folder or remove it",
@@ -146,14 +214,35 @@ struct SweepStore::Implementation {
         });
     }
 
-    void put(const ResultRows& rows) {
+    void put(ResultRows rows) {
+        const std::string beta = rows.beta.empty() ? std::string() : nlohmann::json(rows.beta).dump();
+        const std::int64_t sum = checksum(rows, beta);
+        rows.record.emplace_back(sum);
         if (rows.place < 0) return inserts->pattern.insert({rows.pattern}, rows.record);
         inserts->answer.insert({rows.pattern, rows.place}, rows.record);
         for (std::size_t run = 0; run < rows.runs.size(); ++run) {
             inserts->run.insert({rows.pattern, rows.place, static_cast<int>(run)}, rows.runs[run]);
         }
-        if (rows.beta.empty()) return;
-        inserts->orbit.insert({rows.pattern, rows.place}, {nlohmann::json(rows.beta).dump()});
+        if (!beta.empty()) inserts->orbit.insert({rows.pattern, rows.place}, {beta});
+    }
+
+    // The result of rows that were read, its record with the checksum at its end.
+    [[nodiscard]] WorkResult result(ResultRows rows, const std::string& beta) const {
+        const std::string where = rows.place < 0
+                                      ? fmt::format("table patterns, number {}", rows.pattern)
+                                      : fmt::format("table answers, pattern {}, place {}", rows.pattern, rows.place);
+        const FieldValue sum = rows.record.back();
+        rows.record.pop_back();
+        if (sum != FieldValue(checksum(rows, beta)))
+            damaged(where, "expected it with its solves and orbit as written, got others");
+        try {
+            if (!beta.empty()) rows.beta = nlohmann::json::parse(beta).get<std::vector<double>>();
+            WorkResult result = result_of(rows, scene.bar);
+            judge(result);
+            return result;
+        } catch (const std::exception& error) {
+            damaged(where, error.what());
+        }
     }
 };
 
@@ -167,11 +256,13 @@ SweepStore::SweepStore(const fs::path& folder, const Scene& scene, const StoreVe
     const bool has_part = fs::exists(part);
     if (mode == Mode::resume && !has_part && fs::exists(folder / final_name)) {
         self.open(folder / final_name, false);
+        self.expect_sound();
         self.check(versions);
         return;
     }
     self.open(part, true);
     if (mode == Mode::resume && self.started()) {
+        self.expect_sound();
         self.check(versions);
     } else {
         self.begin_anew(versions);
@@ -182,15 +273,14 @@ SweepStore::SweepStore(const fs::path& folder, const Scene& scene, const StoreVe
 SweepStore::SweepStore(const fs::path& folder) : implementation_(std::make_unique<Implementation>()) {
     auto& self = *implementation_;
     self.folder = folder;
+    expect_sweep_folder(folder);
     const bool final = fs::exists(folder / final_name);
-    if (!final && !fs::exists(folder / part_name)) {
-        fail(folder, fmt::format("expected the folder of a sweep, got one without {}", final_name));
-    }
     // A part file may have a journal to take in, which is writing.
     self.open(folder / (final ? final_name : part_name), !final);
     if (!self.started()) fail(self.file, "expected the results of a sweep, got an empty store");
-    if (self.info("format") != format) {
-        fail(self.file, fmt::format("format of the store: expected {}, got {}", format, self.info("format")));
+    self.expect_sound();
+    if (self.stored_format() != format) {
+        fail(self.file, fmt::format("format of the store: expected {}, got {}", format, self.stored_format()));
     }
     self.scene = parse_scene(self.info("scene"), self.file.string());
     self.scene.all_kinds = self.info("kinds") == "all";
@@ -202,7 +292,7 @@ const Scene& SweepStore::scene() const { return implementation_->scene; }
 
 bool SweepStore::complete() const { return implementation_->info("complete") == "1"; }
 
-double SweepStore::seconds() const { return std::strtod(implementation_->info("seconds").c_str(), nullptr); }
+double SweepStore::seconds() const { return implementation_->seconds(); }
 
 void SweepStore::add_seconds(double more) { implementation_->set_info("seconds", fmt::format("{}", seconds() + more)); }
 
@@ -218,32 +308,43 @@ void SweepStore::put(const std::vector<WorkResult>& results) {
 
 void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
     const auto& self = *implementation_;
-    Database& database = *self.database;
-    const Bar& bar = self.scene.bar;
-    self.guarded("read", [&] {
-        DatabaseStatement patterns(database, "SELECT * FROM patterns ORDER BY number");
-        DatabaseStatement answers(database, "SELECT * FROM answers WHERE pattern = ? ORDER BY place");
-        DatabaseStatement runs(database, "SELECT * FROM solves WHERE pattern = ? AND place = ? ORDER BY run");
-        DatabaseStatement orbit(database, "SELECT * FROM orbits WHERE pattern = ? AND place = ?");
-        while (patterns.step()) {
-            const long pattern = patterns.integer(0);
-            visit(result_of({pattern, -1, patterns.row(1), {}, {}}, bar));
-            answers.select({pattern});
-            while (answers.step()) {
-                ResultRows rows{pattern, static_cast<int>(answers.integer(1)), answers.row(2), {}, {}};
+    if (complete() && self.info("results") != self.count_results())
+        self.damaged("file", fmt::format("expected {}, got {}", self.info("results"), self.count_results()));
+    struct Queries {
+        DatabaseStatement patterns, answers, runs, orbit;
+    };
+    auto [patterns, answers, runs, orbit] = self.guarded("read", [&] {
+        Database& database = *self.database;
+        return Queries{{database, "SELECT * FROM patterns ORDER BY number"},
+                       {database, "SELECT * FROM answers WHERE pattern = ? ORDER BY place"},
+                       {database, "SELECT * FROM solves WHERE pattern = ? AND place = ? ORDER BY run"},
+                       {database, "SELECT * FROM orbits WHERE pattern = ? AND place = ?"}};
+    });
+    const auto next = [&self](DatabaseStatement& query) { return self.guarded("read", [&] { return query.step(); }); };
+    while (next(patterns)) {
+        const long pattern = self.guarded("read", [&] { return patterns.integer(0); });
+        visit(self.result({pattern, -1, self.guarded("read", [&] { return patterns.row(1); }), {}, {}}, {}));
+        self.guarded("read", [&] { answers.select({pattern}); });
+        while (next(answers)) {
+            std::string beta;
+            ResultRows rows{pattern, 0, {}, {}, {}};
+            self.guarded("read", [&] {
+                rows.place = static_cast<int>(answers.integer(1));
+                rows.record = answers.row(2);
                 runs.select({pattern, rows.place});
                 while (runs.step()) rows.runs.push_back(runs.row(3));
                 orbit.select({pattern, rows.place});
-                if (orbit.step()) rows.beta = nlohmann::json::parse(orbit.text(2)).get<std::vector<double>>();
-                visit(result_of(rows, bar));
-            }
+                if (orbit.step()) beta = orbit.text(2);
+            });
+            visit(self.result(std::move(rows), beta));
         }
-    });
+    }
 }
 
 void SweepStore::finish() {
     auto& self = *implementation_;
     if (self.file.filename() != part_name) return;
+    self.set_info("results", self.count_results());
     self.set_info("complete", "1");
     self.inserts.reset();
     self.guarded("written", [&] {

@@ -56,20 +56,20 @@ std::string scan_csv_row(const Bar& bar, const PatternRecord& record) {
     return csv_row(scan_columns, named_values(bar, record));
 }
 
-std::string scan_table(const Bar& bar, const std::vector<PatternRecord>& records) {
+std::string scan_table_header(const Bar& bar) {
     const bool closed = bar.gap_sign() == 0;
-    std::string table = fmt::format("{:>8} {:>8} {:>8} {:>5} {:>10} {:>10}  {:<12} {:<8} {:>12} {:>12}\n", "free r",
-                                    "contact p", "period", "m", "T/tau", "w/w1", "verdict", "kind",
-                                    closed ? "E_min [J]" : "E_min/E_g", closed ? "E_max [J]" : "E_max/E_g");
-    for (const PatternRecord& record : records) {
-        const Pattern& pattern = record.pattern;
-        table += fmt::format("{:>8} {:>9} {:>8} {:>5} {:>10.6g} {:>10.6g}  {:<12} {:<8} {:>12} {:>12}\n",
-                             pattern.free_steps, pattern.contact_steps, pattern.period_steps(), record.kernel_dimension,
-                             pattern.period_ratio(), pattern.frequency_ratio(), name(record.verdict),
-                             record.kind ? name(*record.kind) : "-", terminal_number(record.interval.least),
-                             record.interval.unbounded ? "inf" : terminal_number(record.interval.greatest));
-    }
-    return table;
+    return fmt::format("{:>8} {:>8} {:>8} {:>5} {:>10} {:>10}  {:<12} {:<8} {:>12} {:>12}", "free r", "contact p",
+                       "period", "m", "T/tau", "w/w1", "verdict", "kind", closed ? "E_min [J]" : "E_min/E_g",
+                       closed ? "E_max [J]" : "E_max/E_g");
+}
+
+std::string scan_table_row(const PatternRecord& record) {
+    const Pattern& pattern = record.pattern;
+    return fmt::format("{:>8} {:>9} {:>8} {:>5} {:>10.6g} {:>10.6g}  {:<12} {:<8} {:>12} {:>12}", pattern.free_steps,
+                       pattern.contact_steps, pattern.period_steps(), record.kernel_dimension, pattern.period_ratio(),
+                       pattern.frequency_ratio(), name(record.verdict), record.kind ? name(*record.kind) : "-",
+                       terminal_number(record.interval.least),
+                       record.interval.unbounded ? "inf" : terminal_number(record.interval.greatest));
 }
 
 std::string patterns_csv_header() { return patterns_columns; }

@@ -17,8 +17,9 @@ namespace nsma {
 [[nodiscard]] std::string scan_csv_row(const Bar& bar, const PatternRecord& record);
 
 /// The same for the terminal: aligned columns, "inf" for unbounded, "-" for no value; energies
-/// of a closed gap in joules. Ends with a line end.
-[[nodiscard]] std::string scan_table(const Bar& bar, const std::vector<PatternRecord>& records);
+/// of a closed gap in joules.
+[[nodiscard]] std::string scan_table_header(const Bar& bar);
+[[nodiscard]] std::string scan_table_row(const PatternRecord& record);
 
 /// Columns of a sweep's patterns.csv: those of the scan, then energy_min_joule,
 /// energy_max_joule, energy_unbounded and reason.

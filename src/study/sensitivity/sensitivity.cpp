@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "nsma/orbit/backbone.hpp"
+#include "nsma/numerics/interruption.hpp"
 #include "nsma/search/pattern_problem.hpp"
 #include "price/relaxed_solver.hpp"
 #include "price/tied_optima.hpp"
@@ -49,18 +50,23 @@ public:
     SensitivityRecords run(const std::function<void(long, long)>& progress) {
         const std::vector<Pattern> patterns =
             request_.pattern ? std::vector<Pattern>{*request_.pattern} : patterns_of(scene_);
-        for (const Pattern& pattern : patterns) {
-            if (!keep_going_()) {
-                summary_.interrupted = true;
-                break;
+        try {
+            for (const Pattern& pattern : patterns) {
+                go_on();
+                visit(pattern);
+                if (progress) progress(summary_.patterns, static_cast<long>(patterns.size()));
             }
-            visit(pattern);
-            if (progress) progress(summary_.patterns, static_cast<long>(patterns.size()));
+        } catch (const Interrupted&) {
+            summary_.interrupted = true;
         }
         return std::move(records_);
     }
 
 private:
+    void go_on() const {
+        if (!keep_going_()) throw Interrupted();
+    }
+
     void visit(const Pattern& pattern) {
         ++summary_.patterns;
         PatternOptions options;
@@ -99,7 +105,7 @@ private:
         OrbitRequest wanted;
         Eigen::VectorXd before;  // window of the orbit before, which `nearest` stays near, as in a sweep
         for (const auto& level : levels) {
-            if (!keep_going_()) break;
+            go_on();
             wanted.level = level;
             wanted.objective =
                 level || scene_.objective == Objective::max_energy ? scene_.objective : Objective::min_energy;
@@ -153,7 +159,7 @@ private:
         for (const auto& [relaxed, unit] : studies) {
             wanted.near = optima;
             for (const double amount : request_.amounts) {
-                if (!keep_going_()) return;
+                go_on();
                 CurveRecord record;
                 record.pattern = set.kernel.pattern;
                 record.relaxed = relaxed;
