@@ -4,6 +4,7 @@
 
 #include "decompositions.hpp"
 #include "expect_size.hpp"
+#include "nsma/numerics/interruption.hpp"
 
 namespace nsma {
 namespace {
@@ -23,6 +24,7 @@ public:
     NonnegativeSolution run() {
         const auto iteration_limit = 10 * (matrix_.cols() + matrix_.rows()) + 100;
         for (Eigen::Index iteration = 0; iteration < iteration_limit && !solution_.converged; ++iteration) {
+            stop_point();
             const int entering = entering_column();
             solution_.converged = entering < 0;
             if (!solution_.converged) enter(entering);

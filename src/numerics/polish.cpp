@@ -7,6 +7,7 @@
 
 #include "boundary.hpp"
 #include "decompositions.hpp"
+#include "nsma/numerics/interruption.hpp"
 
 namespace nsma {
 namespace {
@@ -39,6 +40,7 @@ public:
         clean_start();
         Polished result;
         for (; result.steps < steps_limit; ++result.steps) {
+            stop_point();
             active_ = boundary_.active(x_, activity);
             order_ = first_order(boundary_, active_, x_);
             gradient_ = program_.objective_gradient(x_);
@@ -99,6 +101,7 @@ private:
         std::vector<Row> blocked = working;
         const double longest = boundary_.step_to_boundary(x_, direction, 1e-14 * direction.norm(), blocked);
         for (int halving = 0; halving < halvings_limit; ++halving) {
+            stop_point();
             const double step = std::ldexp(longest, -halving);
             const auto x = moved_onto(halving == 0 ? blocked : working, x_ + step * direction);
             if (!x || !is_progress(*x, newton && halving == 0)) continue;
@@ -166,6 +169,7 @@ private:
             std::vector<Row> blocking;
             const double longest = boundary_.step_to_boundary(x_, direction, 1e-14, blocking);
             for (int halving = 0; halving < escape_halvings; ++halving) {
+                stop_point();
                 const auto x = moved_onto(active_, x_ + std::ldexp(longest, -halving) * direction);
                 if (!x || program_.objective(*x) >= objective_ - escape_decrease * (1.0 + std::abs(objective_)))
                     continue;

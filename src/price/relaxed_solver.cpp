@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "tied_optima.hpp"
+#include "nsma/numerics/interruption.hpp"
 #include "numerics/boundary.hpp"
 #include "numerics/linear_program.hpp"
 #include "numerics/polish.hpp"
@@ -129,6 +130,7 @@ private:
     void climb(Eigen::VectorXd direction) {
         double best = -1;
         for (int step = 0; step < climb_limit; ++step) {
+            stop_point();
             const LinearSolution solution = solver_.minimise(-direction);
             if (solution.status != LinearStatus::optimal) return;
             direction = sharpened(form_.program, solution.x);
@@ -243,6 +245,7 @@ std::optional<RelaxedOptimum> relaxed_optimum(const RelaxedSet& set, const Relax
     }
     std::mt19937_64 generator(1);
     for (int k = 0; k < request.starts && !global; ++k) {
+        stop_point();
         attempt(mixture(interval.least_point, interval.vertices, generator) / form.scale);
     }
     return best;

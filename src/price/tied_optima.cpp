@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "nsma/numerics/interruption.hpp"
 #include "nsma/set/admissible_set.hpp"
 #include "search/orbit_program.hpp"
 
@@ -71,6 +72,7 @@ private:
             add(beta);
         };
         for (int shift = 0; shift < period; ++shift) {
+            stop_point();
             if (shift > 0) take([&](int n) { return wave(n + shift); });
             // Backward, from the pattern's own reversal: a wave changes its sign with the free step it arrives in.
             take([&](int n) {
@@ -125,6 +127,7 @@ private:
         std::sort(word.begin(), word.end());
         std::vector<VectorXd> permuted;
         do {
+            stop_point();
             for (VectorXd one : all) {
                 for (std::size_t k = 0; k < group.size(); ++k)
                     one[group[k]] = values[static_cast<std::size_t>(word[k])];

@@ -1,4 +1,5 @@
 #include "nsma/proof/prove.hpp"
+#include "nsma/numerics/interruption.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,9 @@ namespace {
 
 using Shape = AdmissibleSet::Shape;
 using Dense = std::vector<Rational>;
+
+// The proof of a chain grows with the square of its columns: 256 megabytes of text here.
+constexpr std::size_t most_chained = 2'500;
 
 RationalVector sparse(const Dense& dense) {
     RationalVector result;
@@ -79,6 +83,7 @@ private:
 
     // The least upper bound of form . gamma with exact multipliers.
     [[nodiscard]] FormBound bound(const Dense& form) const {
+        stop_point();
         // Of a simplex the sum of all gamma_j is delta/weight, so the greatest coefficient decides.
         RowCombination proof = set_.shape == Shape::chain
                                    ? chain_bound(form)
@@ -143,6 +148,11 @@ private:
 
     // The greatest vertex, and the bound that meets it; kept where check() agrees.
     void greatest() {
+        if (set_.shape == Shape::chain && variables() > most_chained) {
+            proof_.unproved = "greatest energy: proved for chains of at most " + std::to_string(most_chained) +
+                              " columns, got " + std::to_string(variables());
+            return;
+        }
         Certificate trial = proof_.certificate;
         trial.greatest = exact_vertex(set_.vertices.front());
         Rational square;

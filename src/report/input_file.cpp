@@ -37,9 +37,11 @@ InputFile::~InputFile() { close(file_); }
 // The next bytes into the empty buffer; false at the end of the file.
 bool InputFile::fill() {
     for (;;) {
-        stop_point();
         pollfd ready{file_, POLLIN, 0};
-        if (poll(&ready, 1, look_again) == 0) continue;
+        if (poll(&ready, 1, look_again) <= 0) {
+            stop_point();
+            continue;
+        }
         const ssize_t got = read(file_, buffer_.data(), buffer_.size());
         if (got >= 0) {
             at_ = 0;

@@ -1,5 +1,8 @@
 #include "nsma/search/pattern_problem.hpp"
 
+#include <string>
+#include <utility>
+
 namespace nsma {
 namespace {
 
@@ -23,7 +26,14 @@ PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const Patte
     validate(pattern);
     PatternProblem problem;
     problem.kernel = exact_kernel(pattern);
-    problem.set = admissible_set(reduce(conditions(problem.kernel, gap_sign)));
+    Reduction reduction = reduce(conditions(problem.kernel, gap_sign));
+    if (reduction.empty_because.empty() && reduction.variables() > max_unknowns) {
+        problem.verdict = Verdict::failed;
+        problem.set.reason = "expected at most " + std::to_string(max_unknowns) + " unknowns, got " +
+                             std::to_string(reduction.variables()) + "; scan --method integers gives the verdict";
+        return problem;
+    }
+    problem.set = admissible_set(std::move(reduction));
     if (problem.kernel.dimension() == 0) {
         problem.verdict = Verdict::trivial;
     } else if (problem.set.status == AdmissibleSet::Status::empty) {

@@ -35,8 +35,10 @@ TEST(Pattern, KernelDimensionsByHand) {
 TEST(Pattern, LargestAcceptedNumbersDoNotOverflow) {
     const Pattern largest{nsma::max_cells, nsma::max_period_steps - 1, 1};
     EXPECT_NO_THROW(nsma::validate(largest));
-    // g = gcd(2e6, 1e8) = 2e6, q = floor((1e8 - 1)/2e6) = 49, s = 2e6 - 1.
-    EXPECT_EQ(kernel_dimension(largest), 1'999'999);
+    // g = gcd(2e6, 1e7) = 2e6, q = floor((1e7 - 1)/2e6) = 4, s = 2e6 - 1: m = g - s.
+    EXPECT_EQ(kernel_dimension(largest), 1);
+    // q = floor((8e6 - 1)/2e6) = 3, s = 2e6 - 1 = m.
+    EXPECT_EQ(kernel_dimension({nsma::max_cells, 7'999'999, 1}), 1'999'999);
     EXPECT_THROW(nsma::validate(Pattern{1, nsma::max_period_steps, 1}), std::invalid_argument);
     EXPECT_THROW(nsma::validate(Pattern{1, 2'147'483'647, 2'147'483'647}), std::invalid_argument);
 }

@@ -159,7 +159,7 @@ TEST(Edges, AVanishingGapDecidesByItsSign) {
             const auto problem = pattern_problem(pattern, sign);
             const double level = problem.interval.least.value_or(2.0);
             const auto known = solver.solve(bar_with_gap(sign), problem, {.level = 1.1 * level, .reference = {}});
-            for (const double size : {1e-12, 1e-60, 1e-150}) {
+            for (const double size : {1e-9, 1e-12, nsma::least_gap}) {
                 const Bar bar = bar_with_gap(sign * size);
                 ASSERT_EQ(bar.gap_sign(), sign);
                 for (const double factor : {0.999, 1.0}) {

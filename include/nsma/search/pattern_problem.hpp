@@ -10,12 +10,15 @@
 
 namespace nsma {
 
+/// Amplitudes left after reduction beyond which a pattern is not solved: memory grows with their square.
+inline constexpr int max_unknowns = 10'000;
+
 /// Everything about one pattern that no energy level changes: its kernel and admissible set.
 struct PatternProblem {
     Kernel kernel;
     AdmissibleSet set;
     Proof proof;                         ///< empty when proofs were not asked for
-    Verdict verdict = Verdict::trivial;  ///< trivial, inadmissible or admissible
+    Verdict verdict = Verdict::trivial;  ///< trivial, inadmissible or admissible; failed: too many unknowns
     std::optional<PatternKind> kind;     ///< of an admissible pattern
     EnergyInterval interval;             ///< exact where proved
 };

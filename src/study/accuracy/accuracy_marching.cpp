@@ -8,10 +8,13 @@
 #include "nsma/wave/marcher.hpp"
 #include "wave/dense_wfem.hpp"
 #include "nsma/orbit/orbit.hpp"
+#include "nsma/numerics/interruption.hpp"
 #include "nsma/search/pattern_problem.hpp"
 
 namespace nsma {
 namespace {
+
+constexpr int look_every = 1000;  // steps, for a signal that came
 
 constexpr int dense_limit = 80;                    // cells; beyond it a dense step only costs time
 constexpr double repeated_step_limit = 1'000'000;  // steps; beyond it repeated dense ones only cost time
@@ -81,6 +84,7 @@ using Advance = State (*)(const Reference&, int periods);
 template <typename Step>
 void each_step(const Pattern& pattern, int periods, const Step& step) {
     for (int k = 0; k < periods; ++k) {
+        stop_point();
         for (int n = 0; n < pattern.period_steps(); ++n) step(n >= pattern.free_steps);
     }
 }
@@ -152,7 +156,10 @@ Marched march_elements(const Reference& reference, const FiniteElementOptions& o
             if (bar.in_contact() && n > bar.steps() / 4) ++contact_steps;
         }
         const long others = (periods - 1L) * bar.steps();
-        for (long n = 0; n < others; ++n) bar.step();
+        for (long n = 0; n < others; ++n) {
+            if (n % look_every == 0) stop_point();
+            bar.step();
+        }
     });
     for (int n = 0; n < bar.steps(); ++n) {
         const double share = static_cast<double>(n + 1) / bar.steps();

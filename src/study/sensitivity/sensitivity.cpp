@@ -72,9 +72,12 @@ private:
         PatternOptions options;
         options.prove = false;
         const PatternProblem problem = pattern_problem(pattern, gap_sign_, options);
-        if (problem.verdict == Verdict::failed) ++summary_.failed;
+        if (problem.verdict == Verdict::failed) {
+            ++summary_.failed;
+            return;
+        }
         records_.ablations.push_back(ablation_record(problem.kernel, gap_sign_));
-        if (problem.verdict == Verdict::trivial || problem.verdict == Verdict::failed) return;
+        if (problem.verdict == Verdict::trivial) return;
         const RelaxedSet set = relaxed_set(problem.kernel, gap_sign_);
         if (problem.verdict != Verdict::admissible) {
             if (gap_sign_ != 0) curves(set, false, {});
