@@ -2,13 +2,17 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 #include <new>
+#include <string_view>
+
+#include <unistd.h>
 
 #include "command.hpp"
 #include "standard_streams.hpp"
 
-#include "numerics/freed_memory.hpp"
 #include "nsma/numerics/interruption.hpp"
+#include "numerics/freed_memory.hpp"
 #include "nsma/report/input_error.hpp"
 
 namespace {
@@ -28,6 +32,14 @@ extern "C" void on_signal(int signal) {
         std::signal(signal, SIG_DFL);
         std::raise(signal);
     }
+}
+
+// An exception that no function may let through, as where a library promised to throw none and found no memory.
+[[noreturn]] void on_terminate() {
+    constexpr std::string_view line =
+        "nsma: ended by an error inside a library, not enough memory perhaps; what was done is kept\n";
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, line.data(), line.size());
+    _exit(nsma::app::exit_solver);
 }
 
 int run(int count, char** words) {
@@ -56,6 +68,7 @@ int run(int count, char** words) {
 }  // namespace
 
 int main(int count, char** words) {
+    std::set_terminate(on_terminate);
     nsma::app::hold_standard_streams();
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);

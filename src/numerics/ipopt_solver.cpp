@@ -216,10 +216,11 @@ struct IpoptSolver::Implementation {
     Ipopt::SmartPtr<Ipopt::IpoptApplication> application;
 };
 
-IpoptSolver::IpoptSolver(const SolverOptions& options) : implementation_(std::make_unique<Implementation>()) {
-    implementation_->options = options;
-    auto& application = implementation_->application;
-    application = new Ipopt::IpoptApplication(false);  // no console journal
+namespace {
+
+// Takes as long as a small solve.
+Ipopt::SmartPtr<Ipopt::IpoptApplication> made_application(const SolverOptions& options) {
+    Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);  // no console journal
     auto& list = *application->Options();
     set_option(list, "print_level", 0);
     set_option(list, "sb", "yes");
@@ -243,6 +244,13 @@ IpoptSolver::IpoptSolver(const SolverOptions& options) : implementation_(std::ma
     if (application->Initialize("") != Ipopt::Solve_Succeeded) {
         throw std::runtime_error("Ipopt: initialisation failed");
     }
+    return application;
+}
+
+}  // namespace
+
+IpoptSolver::IpoptSolver(const SolverOptions& options) : implementation_(std::make_unique<Implementation>()) {
+    implementation_->options = options;
 }
 
 IpoptSolver::~IpoptSolver() = default;
@@ -252,10 +260,19 @@ IpoptSolver& IpoptSolver::operator=(IpoptSolver&&) noexcept = default;
 SolverOutcome IpoptSolver::solve(const Program& program, const Eigen::VectorXd& start) {
     validate(program, start);
     const auto begin = std::chrono::steady_clock::now();
+    auto& application = implementation_->application;
+    if (!Ipopt::IsValid(application)) {
+        try {
+            application = made_application(implementation_->options);
+        } catch (const Ipopt::IpoptException&) {  // its word for no memory, which is no std::exception
+            throw std::bad_alloc();
+        }
+    }
     auto* adapter = new Adapter(program, start, implementation_->options.time_limit);
     const Ipopt::SmartPtr<Ipopt::TNLP> owner(adapter);
-    const auto status = implementation_->application->OptimizeTNLP(owner);
+    const auto status = application->OptimizeTNLP(owner);
     stop_point();
+    if (status == Ipopt::Insufficient_Memory) throw std::bad_alloc();  // of the machine, not of the program
     SolverOutcome outcome;
     outcome.x = adapter->x();
     outcome.iterations = adapter->iterations();

@@ -183,8 +183,6 @@ std::string optimise(NloptMethod method, Call& call, const SolverOptions& option
         status = "FORCED_STOP";
     } catch (const std::invalid_argument&) {
         status = "INVALID_ARGS";
-    } catch (const std::bad_alloc&) {
-        status = "OUT_OF_MEMORY";
     } catch (const std::runtime_error&) {
         status = "FAILURE";
     }

@@ -39,7 +39,7 @@ Json json_of(const SolverRun& run, bool with_seconds) {
 
 // Values as the members of an object; the prefix of their names is left out.
 Json object(const NamedValues& values, const std::string& prefix, std::initializer_list<const char*> names) {
-    Json json;
+    Json json = Json::object();
     for (const char* name : names) json[name] = json_of(values.at(prefix + name));
     return json;
 }

@@ -1,6 +1,7 @@
 #include "report/sweep/sweep_store.hpp"
 
 #include <csignal>
+#include <random>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
@@ -259,6 +260,161 @@ TEST_F(SweepStoreTest, AnInterruptedSweepLeavesWhatItHas) {
     for (int time = 0; time < 2; ++time)
         EXPECT_THAT(export_sweep(store, path).line, HasSubstr("partial results are in"));
     EXPECT_THAT(sample::read(path / "summary.txt"), HasSubstr("interrupted"));
+}
+
+/// What a store that was tampered with leads to: the tables, or the message that refuses it.
+struct Outcome {
+    std::string tables;
+    std::string message;
+};
+
+class DamagedStore : public SweepStoreTest {
+protected:
+    [[nodiscard]] std::string tables(const std::filesystem::path& folder) const {
+        std::string all;
+        for (const char* name : {"patterns.csv", "levels.csv", "orbits.jsonl", "timings.csv", "summary.json"})
+            all += sample::read(folder / name);
+        return all;
+    }
+    /// Exports a store; of a part file after going on with it.
+    [[nodiscard]] Outcome outcome(const std::filesystem::path& folder, bool part) {
+        Outcome result;
+        result.message = error_of([&] {
+            if (part) {
+                SweepStore store(folder, scene, versions, Mode::resume);
+                if (work(store)) store.finish();
+            }
+            SweepStore store(folder);
+            (void)export_sweep(store, folder, false);
+        });
+        result.tables = tables(folder);
+        return result;
+    }
+    void expect_refused(const std::string& message) const {
+        EXPECT_THAT(message, HasSubstr("results.sqlite"));
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+};
+
+TEST_F(DamagedStore, EveryChangedValueOfEveryColumnIsRefused) {
+    (void)whole(path / "whole");
+    const std::filesystem::path file = path / "whole" / "results.sqlite";
+    const std::string sound = sample::read(file);
+    std::vector<std::pair<std::string, std::string>> columns;
+    {
+        SQLite::Database database(file);
+        SQLite::Statement query(database,
+                                "SELECT m.name, c.name FROM sqlite_master m JOIN pragma_table_info(m.name) c"
+                                " WHERE m.type = 'table'");
+        while (query.executeStep())
+            columns.emplace_back(query.getColumn(0).getString(), query.getColumn(1).getString());
+    }
+    ASSERT_GT(columns.size(), 60U);
+    for (const auto& [table, column] : columns) {
+        for (const std::string change : {"'other'", "7777", "NULL", "7.5"}) {
+            SCOPED_TRACE(table + "." + column + " = " + change);
+            sample::write(file, sound);
+            int changed = 0;
+            try {
+                SQLite::Database database(file, SQLite::OPEN_READWRITE);
+                // Its own value again changes nothing.
+                changed = database.exec("UPDATE " + table + " SET " + column + " = " + change + " WHERE " + column +
+                                        " IS NOT " + change + " AND " + column + " = (SELECT max(" + column +
+                                        ") FROM " + table + ")");
+            } catch (const SQLite::Exception&) {
+                continue;  // two rows of one key
+            }
+            if (changed == 0) continue;
+            const Outcome damaged = outcome(path / "whole", false);
+            EXPECT_NE(damaged.message, "no error");
+            expect_refused(damaged.message);
+        }
+    }
+    for (const std::string key :
+         {"format", "scene", "scene_hash", "title", "software", "options", "kinds", "complete", "results", "seconds"}) {
+        for (const std::string change : {"UPDATE sweep SET value = '1' || value", "DELETE FROM sweep"}) {
+            SCOPED_TRACE(change + " " + key);
+            sample::write(file, sound);
+            ASSERT_EQ(SQLite::Database(file, SQLite::OPEN_READWRITE).exec(change + " WHERE key = '" + key + "'"), 1);
+            expect_refused(outcome(path / "whole", false).message);
+        }
+    }
+}
+
+TEST_F(DamagedStore, LostRowsAreMissed) {
+    (void)whole(path / "whole");
+    const std::filesystem::path file = path / "whole" / "results.sqlite";
+    const std::string sound = sample::read(file);
+    for (const std::string table : {"patterns", "answers", "solves", "orbits"}) {
+        for (const std::string which : {"min", "max"}) {
+            SCOPED_TRACE(table + " " + which);
+            sample::write(file, sound);
+            const int lost =
+                SQLite::Database(file, SQLite::OPEN_READWRITE)
+                    .exec("DELETE FROM " + table + " WHERE rowid = (SELECT " + which + "(rowid) FROM " + table + ")");
+            if (lost == 0) continue;  // closed forms need no solver
+            expect_refused(outcome(path / "whole", false).message);
+        }
+    }
+}
+
+TEST_F(DamagedStore, FlippedAndLostBytesNeverGiveOtherTables) {
+    // Of complete results and of a part file that is gone on with: either they are refused in one line, or nothing that
+    // counts was hit and the tables are the same.
+    (void)whole(path / "whole");
+    const Outcome sound = outcome(path / "whole", false);
+    ASSERT_EQ(sound.message, "no error");
+    {
+        SweepStore store(path / "part", scene, versions, Mode::fresh);
+        (void)work(store, 6);
+    }
+    std::mt19937 random(13);
+    int refused = 0;
+    int harmless = 0;
+    for (const bool part : {false, true}) {
+        const std::string name = part ? "results.sqlite.part" : "results.sqlite";
+        const std::string bytes = sample::read(path / (part ? "part" : "whole") / name);
+        for (int i = 0; i < 300; ++i) {
+            SCOPED_TRACE(testing::Message() << name << " " << i);
+            std::string damaged = bytes;
+            const std::size_t at = random() % damaged.size();
+            switch (i % 4) {
+                case 0: damaged[at] = static_cast<char>(damaged[at] ^ (1 << random() % 8)); break;
+                case 1:
+                    for (std::size_t k = at; k < std::min(at + 16, damaged.size()); ++k)
+                        damaged[k] = static_cast<char>(random());
+                    break;
+                case 2:
+                    damaged.replace(at, 512, std::string(std::min<std::size_t>(512, damaged.size() - at), '\0'));
+                    break;
+                default: damaged.resize(at);
+            }
+            const std::filesystem::path folder = path / "damaged";
+            std::filesystem::remove_all(folder);
+            std::filesystem::create_directory(folder);
+            sample::write(folder / "scene.toml", scene.text);
+            sample::write(folder / name, damaged);
+            const Outcome found = outcome(folder, part);
+            if (found.message == "no error") {
+                // Times of what is done anew are new.
+                const auto of_results = [&](const std::filesystem::path& from) {
+                    return sample::read(from / "patterns.csv") + sample::read(from / "levels.csv") +
+                           sample::read(from / "orbits.jsonl");
+                };
+                EXPECT_EQ(of_results(folder), of_results(path / "whole"));
+                if (!part) {
+                    EXPECT_EQ(found.tables, sound.tables);
+                }
+                ++harmless;
+            } else {
+                expect_refused(found.message);
+                ++refused;
+            }
+        }
+    }
+    RecordProperty("refused", refused);
+    RecordProperty("harmless", harmless);
+    EXPECT_GT(refused, 100);
 }
 
 TEST_F(SweepStoreTest, DamagedFoldersAreNamed) {

@@ -1,5 +1,6 @@
 #include "sweep_store.hpp"
 
+#include <array>
 #include <bit>
 #include <charconv>
 #include <optional>
@@ -10,8 +11,8 @@
 #include "database.hpp"
 #include "store_tables.hpp"
 #include "sweep_folder.hpp"
-#include "orbit/fnv_hash.hpp"
 #include "nsma/orbit/replay.hpp"
+#include "orbit/fnv_hash.hpp"
 #include "nsma/report/scene_file.hpp"
 
 namespace nsma {
@@ -23,6 +24,9 @@ constexpr const char* final_name = "results.sqlite";
 constexpr const char* part_name = "results.sqlite.part";
 // Raised with every change of the tables below, or of what a level's answer follows from.
 constexpr const char* format = "4";
+// What the table `sweep` holds.
+constexpr std::array info_keys{"format",  "scene", "scene_hash", "title",   "software",
+                               "options", "kinds", "complete",   "results", "seconds"};
 
 void add(FnvHash& hash, const std::string& text) {
     hash.add(text.size());
@@ -36,12 +40,14 @@ std::string hash_of(const std::string& text) {
 }
 
 void add(FnvHash& hash, const RecordRow& row) {
+    constexpr std::size_t integer_index = 2;
+    static_assert(std::is_same_v<std::variant_alternative_t<integer_index, FieldValue>, std::int64_t>);
     hash.add(row.size());
     for (const FieldValue& value : row) {
         const auto* truth = std::get_if<bool>(&value);
-        const FieldValue stored = truth != nullptr ? FieldValue(std::int64_t{*truth}) : value;  // as SQLite has it
-        hash.add(stored.index());
-        if (const auto* whole = std::get_if<std::int64_t>(&stored)) hash.add(static_cast<std::uint64_t>(*whole));
+        hash.add(truth != nullptr ? integer_index : value.index());  // SQLite has no truth values
+        if (truth != nullptr) hash.add(*truth ? 1 : 0);
+        if (const auto* whole = std::get_if<std::int64_t>(&value)) hash.add(static_cast<std::uint64_t>(*whole));
         if (const auto* real = std::get_if<double>(&value)) hash.add(std::bit_cast<std::uint64_t>(*real));
         if (const auto* text = std::get_if<std::string>(&value)) add(hash, *text);
     }
@@ -93,9 +99,7 @@ struct SweepStore::Implementation {
 
     void open(const fs::path& path, bool write) {
         file = path;
-        guarded("opened", [&] {
-            database = std::make_unique<Database>(file, write);
-        });
+        guarded("opened", [&] { database = std::make_unique<Database>(file, write); });
     }
 
     // Before anything is believed of a store that was there.
@@ -106,6 +110,7 @@ struct SweepStore::Implementation {
             return query.step() ? query.text(0) : std::string("no answer");
         });
         if (said != "ok") damaged("file", said);
+        for (const char* key : info_keys) (void)info(key);
     }
 
     [[noreturn]] void damaged(const std::string& where, const std::string& what) const {
@@ -135,8 +140,10 @@ struct SweepStore::Implementation {
 
     void set_info(const std::string& key, const std::string& value) {
         guarded("written", [&] {
+            RecordRow row;
+            for (const std::string& text : {key, value, hash_of(key + "=" + value)}) row.emplace_back(text);
             DatabaseStatement(*database, "INSERT OR REPLACE INTO sweep (key, value, checksum) VALUES (?, ?, ?)")
-                .insert({}, {key, value, hash_of(key + "=" + value)});
+                .insert({}, row);
         });
     }
 
@@ -147,14 +154,16 @@ struct SweepStore::Implementation {
         return value;
     }
 
-    // How many results there are: known once the sweep is complete.
+    static std::string count_text(long patterns, long answers) {
+        return fmt::format("{} patterns, {} answers", patterns, answers);
+    }
     [[nodiscard]] std::string count_results() const {
         return guarded("read", [&] {
             DatabaseStatement query(*database,
-                                    "SELECT (SELECT count(*) FROM patterns) || ' patterns, ' ||"
-                                    " (SELECT count(*) FROM answers) || ' answers'");
+                                    "SELECT (SELECT count(*) FROM patterns), (SELECT count(*) FROM answers)");
             query.select({});
-            return query.step() ? query.text(0) : std::string();
+            (void)query.step();
+            return count_text(query.integer(0), query.integer(1));
         });
     }
 
@@ -162,29 +171,37 @@ struct SweepStore::Implementation {
         return guarded("read", [&] { return database->has_table("sweep"); });
     }
 
-    void begin_anew(const StoreVersions& versions) {
+    // Whatever a part file of before holds goes, unless another process has it.
+    void begin_anew(const fs::path& part, const StoreVersions& versions) {
+        if (fs::exists(part)) {
+            try {
+                Database(part, true);
+            } catch (const DatabaseError& error) {
+                if (error.locked()) fail(part, "is in use by another process");
+            }
+            for (const char* suffix : {"", "-wal", "-journal", "-shm"}) {
+                std::error_code code;
+                fs::remove(part.string() + suffix, code);
+                if (code) fail(part, fmt::format("cannot be removed: {}", code.message()));
+            }
+        }
+        open(part, true);
         guarded("written", [&] {
             database->transaction([&] {
-                database->execute("DROP VIEW IF EXISTS timings");
-                database->execute("DROP TABLE IF EXISTS sweep");
-                for (const StoreTable& table : store_tables()) {
-                    database->execute(fmt::format("DROP TABLE IF EXISTS {}", table.name));
-                }
                 database->execute("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT, checksum TEXT) WITHOUT ROWID");
                 for (const StoreTable& table : store_tables()) database->execute(table.create_sql());
                 database->execute(timings_view_sql);
-                for (const auto& [key, value] : {std::pair<const char*, std::string>{"format", format},
-                                                 {"scene", scene.text},
-                                                 {"scene_hash", hash_of(scene.text)},
-                                                 {"title", scene.title},
-                                                 {"software", versions.software},
-                                                 {"options", versions.options},
-                                                 {"kinds", scene.all_kinds ? "all" : "contact"},
-                                                 {"complete", "0"},
-                                                 {"results", ""},
-                                                 {"seconds", "0"}}) {
-                    set_info(key, value);
-                }
+                const std::array<std::string, info_keys.size()> values{format,
+                                                                       scene.text,
+                                                                       hash_of(scene.text),
+                                                                       scene.title,
+                                                                       versions.software,
+                                                                       versions.options,
+                                                                       scene.all_kinds ? "all" : "contact",
+                                                                       "0",
+                                                                       "",
+                                                                       "0"};
+                for (std::size_t i = 0; i < values.size(); ++i) set_info(info_keys[i], values[i]);
             });
         });
     }
@@ -195,6 +212,7 @@ struct SweepStore::Implementation {
                                    what, now, stored));
         };
         if (stored_format() != format) refuse("format of the store", stored_format(), format);
+        expect_sound();
         if (info("scene") != scene.text) {
             fail(file,
                  fmt::format("holds results of another scene (hash {}, not {}); choose another folder or remove it",
@@ -256,16 +274,19 @@ SweepStore::SweepStore(const fs::path& folder, const Scene& scene, const StoreVe
     const bool has_part = fs::exists(part);
     if (mode == Mode::resume && !has_part && fs::exists(folder / final_name)) {
         self.open(folder / final_name, false);
-        self.expect_sound();
         self.check(versions);
         return;
     }
-    self.open(part, true);
-    if (mode == Mode::resume && self.started()) {
-        self.expect_sound();
+    bool goes_on = false;
+    if (mode == Mode::resume && has_part) {
+        self.open(part, true);
+        goes_on = self.started();
+    }
+    if (goes_on) {
         self.check(versions);
     } else {
-        self.begin_anew(versions);
+        self.database.reset();
+        self.begin_anew(part, versions);
     }
     self.prepare();
 }
@@ -278,10 +299,10 @@ SweepStore::SweepStore(const fs::path& folder) : implementation_(std::make_uniqu
     // A part file may have a journal to take in, which is writing.
     self.open(folder / (final ? final_name : part_name), !final);
     if (!self.started()) fail(self.file, "expected the results of a sweep, got an empty store");
-    self.expect_sound();
     if (self.stored_format() != format) {
         fail(self.file, fmt::format("format of the store: expected {}, got {}", format, self.stored_format()));
     }
+    self.expect_sound();
     self.scene = parse_scene(self.info("scene"), self.file.string());
     self.scene.all_kinds = self.info("kinds") == "all";
 }
@@ -308,8 +329,8 @@ void SweepStore::put(const std::vector<WorkResult>& results) {
 
 void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
     const auto& self = *implementation_;
-    if (complete() && self.info("results") != self.count_results())
-        self.damaged("file", fmt::format("expected {}, got {}", self.info("results"), self.count_results()));
+    long decided = 0;
+    long answered = 0;
     struct Queries {
         DatabaseStatement patterns, answers, runs, orbit;
     };
@@ -323,6 +344,7 @@ void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
     const auto next = [&self](DatabaseStatement& query) { return self.guarded("read", [&] { return query.step(); }); };
     while (next(patterns)) {
         const long pattern = self.guarded("read", [&] { return patterns.integer(0); });
+        ++decided;
         visit(self.result({pattern, -1, self.guarded("read", [&] { return patterns.row(1); }), {}, {}}, {}));
         self.guarded("read", [&] { answers.select({pattern}); });
         while (next(answers)) {
@@ -336,9 +358,13 @@ void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
                 orbit.select({pattern, rows.place});
                 if (orbit.step()) beta = orbit.text(2);
             });
+            ++answered;
             visit(self.result(std::move(rows), beta));
         }
     }
+    const std::string found = Implementation::count_text(decided, answered);
+    if (complete() && self.info("results") != found)
+        self.damaged("file", fmt::format("expected {}, got {}", self.info("results"), found));
 }
 
 void SweepStore::finish() {

@@ -1,0 +1,232 @@
+// Streams, signals and launchers: what surrounds the program.
+#include <csignal>
+
+#include <sys/stat.h>
+
+#include "program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using process::contents;
+
+class Surroundings : public Program {
+protected:
+    /// A shell that runs the program, "$0", with the words as "$@".
+    [[nodiscard]] Result shell(const std::string& line, const Words& words) const {
+        return finish(
+            process::start(with({"sh", "-c", line, NSMA_PROGRAM}, words), folder_ / ".out", folder_ / ".err"));
+    }
+    [[nodiscard]] Words prove(const std::string& out) const {
+        return {"prove", scene_, "--cells", "6", "--period", "0", "4", "--out", path(out), "--quiet"};
+    }
+    /// Starts it, gives it a moment, and asks it to end.
+    [[nodiscard]] Result ended_by(int signal, const Words& words) const {
+        const pid_t child = start(words);
+        // Handlers are set within the first milliseconds; all of these go on for minutes, or for ever.
+        process::wait_for([&] { return process::ended(child); }, 1.0);
+        EXPECT_FALSE(process::ended(child)) << "too short to be interrupted";
+        kill(child, signal);
+        EXPECT_TRUE(process::wait_for([&] { return process::ended(child); }, 30)) << words.front();
+        kill(child, SIGKILL);
+        return finish(child);
+    }
+    /// Levels of a chain of 400 columns, each of which solvers take long for.
+    [[nodiscard]] Words long_orbit() const {
+        return {"orbit",     scene_, "--cells",  "100", "--free",   "399",
+                "--contact", "1",    "--energy", "50",  "--solver", "both"};
+    }
+};
+
+TEST_F(Surroundings, AClosedStreamIsNotTheNextFile) {
+    ASSERT_EQ(run(prove("whole")).exit_code, 0);
+    // Without --quiet, and with a pattern that is told of on stderr, messages would be lines of the result.
+    for (const std::string closed : {"0<&-", "2>&-", "0<&- 2>&-"}) {
+        fs::remove(path("out"));
+        EXPECT_EQ(shell("exec \"$0\" \"$@\" " + closed, prove("out")).exit_code, 0) << closed;
+        EXPECT_EQ(contents(path("out")), contents(path("whole"))) << closed;
+    }
+    fs::remove(path("out"));
+    EXPECT_EQ(shell("exec \"$0\" \"$@\" >&- 2>&-", prove("out")).exit_code, 2);
+    EXPECT_EQ(contents(path("out")), contents(path("whole")));
+}
+
+TEST_F(Surroundings, OutputThatCannotBeWrittenIsTwo) {
+    ASSERT_EQ(run(prove("proofs")).exit_code, 0);
+    ASSERT_EQ(run({"sweep", scene_, "--out", path("sweep"), "--quiet"}).exit_code, 0);
+    const std::vector<Words> commands{{"--help"},
+                                      {"--version"},
+                                      {"scan", scene_},
+                                      {"scan", scene_, "--cells", "40", "--period", "0", "4", "--csv"},
+                                      {"orbit", scene_, "--free", "16", "--contact", "4"},
+                                      {"check", path("proofs")},
+                                      {"export", path("sweep")},
+                                      {"plot", path("sweep")}};
+    for (const Words& words : commands) {
+        SCOPED_TRACE(words.front());
+        for (const std::string where : {">/dev/full", ">&-"}) {
+            const Result result = shell("exec \"$0\" \"$@\" " + where, words);
+            EXPECT_EQ(result.exit_code, 2) << where;
+            EXPECT_EQ(result.err.find("nsma: standard output: cannot be written: "), 0U) << result.err;
+            EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+        }
+        // stderr is for those who read it.
+        EXPECT_EQ(shell("exec \"$0\" \"$@\" 2>/dev/full", words).exit_code, run(words).exit_code);
+    }
+}
+
+TEST_F(Surroundings, AReaderThatHasEnoughIsNoError) {
+    const Result result = shell("{ \"$0\" \"$@\"; echo $? >&2; } | head -1",
+                                {"scan", scene_, "--cells", "60", "--period", "0", "4", "--csv"});
+    EXPECT_EQ(result.err, "141\n");  // as of a program that SIGPIPE ended
+    EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1);
+}
+
+TEST_F(Surroundings, TheFirstSignalEndsWhateverGoesOn) {
+    ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+    for (const Words& words : {Words{"scan", path("pipe")}, Words{"check", path("pipe")}, long_orbit()}) {
+        SCOPED_TRACE(words.front());
+        EXPECT_EQ(ended_by(SIGTERM, words).exit_code, 143);
+        const Result interrupted = ended_by(SIGINT, words);
+        EXPECT_EQ(interrupted.exit_code, 130);
+        EXPECT_EQ(interrupted.err, "");
+    }
+}
+
+TEST_F(Surroundings, AProofThatIsInterruptedLeavesAPartFile) {
+    // A chain of 2,400 columns: its proof has millions of fractions.
+    const Words words{"prove", scene_, "--cells", "601", "--free", "2403", "--contact", "1", "--out", path("out")};
+    const Result result = ended_by(SIGTERM, words);
+    EXPECT_EQ(result.exit_code, 143);
+    EXPECT_NE(result.out.find("interrupted: those so far are in " + path("out") + ".part"), std::string::npos);
+    EXPECT_FALSE(fs::exists(path("out")));
+    EXPECT_TRUE(fs::exists(path("out.part")));
+}
+
+TEST_F(Surroundings, AFolderIsForOneProcess) {
+    std::string levels = "[1.1";
+    for (int i = 2; i < 400; ++i) levels += ", " + std::to_string(1 + 0.1 * i);
+    const std::string scene = write("long.toml", scene_text("1.0", "12", "period = [0.0, 4.0]", levels + "]"));
+    const std::string out = path("out");
+    const pid_t first =
+        process::start({NSMA_PROGRAM, "sweep", scene, "--out", out, "--quiet", "--all-kinds", "--solver", "both"},
+                       path(".1"), path(".2"));
+    process::wait_for([&] { return fs::exists(out + "/results.sqlite.part-wal") || process::ended(first); }, 60);
+    for (const Words& words : {Words{"sweep", scene, "--out", out}, Words{"sweep", scene, "--out", out, "--resume"},
+                               Words{"export", out}, Words{"plot", out}, Words{"sensitivity", scene, "--out", out}}) {
+        const Result refused = run(words);
+        EXPECT_EQ(refused.exit_code, 2) << words.front();
+        EXPECT_EQ(refused.err, "nsma: " + out + ": is in use by process " + std::to_string(first) + "\n");
+    }
+    kill(first, SIGKILL);
+    EXPECT_EQ(process::finish(first), -SIGKILL);
+    EXPECT_EQ(run({"export", out}).exit_code, 0);  // the lock went with its process
+}
+
+TEST_F(Surroundings, VariablesOfAnotherLaunchMakeNoRanks) {
+    const std::string alone = path("alone");
+    const int code = run({"sweep", scene_, "--out", alone, "--quiet"}).exit_code;
+    for (const std::string rank : {"0", "1"}) {
+        const std::string out = path("leaked" + rank);
+        const Words words{"env", "OMPI_COMM_WORLD_SIZE=2", "OMPI_COMM_WORLD_RANK=" + rank,
+                          // OpenMPI's own leaks
+                          "ASAN_OPTIONS=detect_leaks=0", NSMA_PROGRAM, "sweep", scene_, "--out", out, "--quiet"};
+        const pid_t child = process::start(words, path(".out"), path(".err"));
+        EXPECT_TRUE(process::wait_for([&] { return process::ended(child); }, 60)) << "hangs";
+        kill(child, SIGKILL);
+        EXPECT_EQ(finish(child).exit_code, code);
+        EXPECT_EQ(contents(out + "/levels.csv"), contents(alone + "/levels.csv"));
+        // What it refuses it says, whatever rank it is told to be.
+        const Result refused = shell(
+            "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=" + rank + " ASAN_OPTIONS=detect_leaks=0 exec \"$0\" \"$@\"",
+            {"sweep", path("none.toml"), "--out", out});
+        EXPECT_EQ(refused.exit_code, 2);
+        EXPECT_NE(refused.err.find("none.toml: expected a scene file"), std::string::npos) << refused.err;
+    }
+}
+
+TEST_F(Surroundings, WhatCannotBeReadSaysWhy) {
+    fs::create_directory(path("shut"));
+    fs::permissions(folder_, fs::perms::others_all, fs::perm_options::add);
+    fs::permissions(path("shut"), fs::perms::none);
+    for (const Words& words : {Words{"export", path("shut")}, Words{"plot", path("shut")}}) {
+        const pid_t child =
+            process::start(with({NSMA_PROGRAM}, words), path(".out"), path(".err"), {.no_rights = true});
+        const Result refused = finish(child);
+        if (refused.exit_code >= 126) break;  // no other user here, or none who reaches the program
+        EXPECT_EQ(refused.exit_code, 2);
+        EXPECT_NE(refused.err.find("Permission denied"), std::string::npos) << refused.err;
+    }
+    fs::permissions(path("shut"), fs::perms::owner_all);
+    expect_refused({"export", path("shut")}, "got one without results.sqlite");
+}
+
+TEST_F(Surroundings, NumbersAreDecimalAndInRange) {
+    const auto count = [&](const std::string& cells) {
+        const Result result = run({"scan", scene_, "--cells", cells, "--period", "0", "4", "--csv"});
+        EXPECT_EQ(result.exit_code, 0) << cells;
+        return std::count(result.out.begin(), result.out.end(), '\n');
+    };
+    EXPECT_EQ(count("010"), count("10"));
+    EXPECT_EQ(count("+10"), count("10"));
+    EXPECT_NE(count("8"), count("10"));
+    for (const std::string cells : {"0x10", "1e1", "10 ", " 10", "10,", "--10", "+-10"})
+        expect_refused({"scan", scene_, "--cells=" + cells}, "--cells");
+    for (const std::string gap : {"1e-400", "1e400", "1e-200", "1e60", "0x1", "1,5"})
+        expect_refused({"scan", scene_, "--gap=" + gap}, "gap: expected");
+    for (const std::string energy : {"1e-200", "1e200", "1e-400"})
+        expect_refused({"orbit", scene_, "--free", "16", "--contact", "4", "--energy", energy}, "--energy: expected");
+    // More patterns, or levels over them, than memory holds.
+    expect_refused({"scan", scene_, "--cells", "10000", "--period", "0", "4"},
+                   "patterns: expected at most 10000000, got");
+    const std::string many = "from = 1.0\nto = 9.0\ncount = 1000000\nspacing = \"log\"";
+    std::string text = scene_text("1.0", "1000", "period = [0.0, 4.0]");
+    text.replace(text.find("list = [1.6, 12.0]"), 18, many);
+    expect_refused({"sweep", write("many.toml", text), "--out", path("out")}, "levels: expected at most");
+    // One pattern of too many unknowns is a row with its reason.
+    const Result large = run({"orbit", scene_, "--cells", "100000", "--free", "399999", "--contact", "1"});
+    EXPECT_EQ(large.exit_code, 4);
+    EXPECT_NE(large.out.find("expected at most 10000 unknowns, got 199999"), std::string::npos) << large.out;
+}
+
+TEST_F(Surroundings, WordsThatDoNotGoTogetherAreRefused) {
+    expect_refused({"swep"}, "got swep");
+    expect_refused({}, "got none");
+    expect_refused({"prove", scene_, "--free", "16", "--contact", "4", "--period", "0", "4", "--out", path("out")},
+                   "--period");
+    expect_refused({"scan", scene_, "--cells", std::string(5000, '7')}, "--cells");
+    const Result long_word = run({std::string(5000, 'k')});
+    EXPECT_LT(long_word.err.size(), 300U);
+}
+
+TEST_F(Surroundings, AForgedCertificateKeepsNobodyBusy) {
+    // Each is refused or rejected with its reason before the work it asks for is done.
+    const std::string head = R"({"certificate":2,"cells":)";
+    std::string digits(9000, '7'), rows, forms;
+    for (int n = 1; n < 24; ++n)
+        rows +=
+            (n > 1 ? ",[" : "[") + std::to_string(n) + ",\"1/" + digits.replace(0, 2, std::to_string(10 + n)) + "\"]";
+    for (int k = 0; k < 1500; ++k) forms += std::string(k > 0 ? "," : "") + R"({"form":[],"rows":[],"contact":"0"})";
+    const struct {
+        std::string text, reason;
+    } forged[]{
+        {head + R"(20,"free_steps":48,"contact_steps":16,"gap_sign":1,"claim":"empty","projection":[)" + rows + "]}",
+         "expected a fraction"},
+        {head + R"(1000000,"free_steps":2400000,"contact_steps":800000,"gap_sign":0,"claim":"empty","rest":[)" + forms +
+             "]}",
+         "steps and columns over all forms"},
+        {head + std::string(80'000, '[') + std::string(80'000, ']') + "}", "expected brackets at most 16 deep"},
+        {head + std::string(80'000, '['), "expected brackets at most 16 deep"},
+        {head + "6,\"" + std::string(5000, 'k') + "\":1}", "kkk..."}};
+    for (const auto& [text, reason] : forged) {
+        const pid_t child = start({"check", write("forged.jsonl", text + "\n")});
+        EXPECT_TRUE(process::wait_for([&] { return process::ended(child); }, 30)) << reason;
+        kill(child, SIGKILL);
+        const Result result = finish(child);
+        EXPECT_TRUE(result.exit_code == 2 || result.exit_code == 4) << result.exit_code;
+        EXPECT_NE((result.out + result.err).find(reason), std::string::npos) << result.out << result.err;
+        EXPECT_LT(result.err.size(), 300U);
+    }
+}
+
+}  // namespace
