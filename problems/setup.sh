@@ -7,7 +7,7 @@ g++ cmake ninja-build pkg-config
 libeigen3-dev coinor-libipopt-dev libnlopt-dev libnlopt-cxx-dev coinor-libclp-dev coinor-libcoinutils-dev
 libboost-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev
 libsqlitecpp-dev libsqlite3-dev libopenmpi-dev openmpi-bin
-libgtest-dev libgmock-dev
+libgtest-dev libgmock-dev strace
 gnuplot-nox fonts-dejavu-core
 "
 

@@ -3,22 +3,22 @@ set -eu
 
 usage() {
     cat <<'END'
-usage: sh tests/run.sh [release|debug|clang|lint ...]
+usage: sh tests/run.sh [release|debug|clang|lint|fuzz ...]
 
 Installs the packages that are missing (sudo only if not root), then configures, builds and tests each preset named;
 without a name release, then debug (address and undefined-behaviour sanitizers), then lint (tests/lint.sh: formatting,
-clang-tidy, reference pages). It may be run again at any time.
+clang-tidy, reference pages), then fuzz (tests/fuzz/run.sh: hostile input, made up for a minute). It may be run again at any time.
 END
 }
 
 for preset in "$@"; do
     case "$preset" in
-        release | debug | clang | lint) ;;
+        release | debug | clang | lint | fuzz) ;;
         -h | --help) usage; exit 0 ;;
         *) usage >&2; exit 2 ;;
     esac
 done
-[ $# -gt 0 ] || set -- release debug lint
+[ $# -gt 0 ] || set -- release debug lint fuzz
 
 top=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 cd "$top"
@@ -28,10 +28,10 @@ case " $* " in *" clang "*) packages="$packages clang" ;; esac
 install_packages
 
 for preset in "$@"; do
-    if [ "$preset" = lint ]; then
-        sh tests/lint.sh
-        continue
-    fi
+    case "$preset" in
+        lint) sh tests/lint.sh; continue ;;
+        fuzz) sh tests/fuzz/run.sh; continue ;;
+    esac
     say "building and testing the preset $preset"
     cmake --workflow --preset "$preset"
 done

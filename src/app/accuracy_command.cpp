@@ -6,8 +6,8 @@
 #include "nsma/numerics/interruption.hpp"
 #include "study/accuracy/accuracy.hpp"
 #include "nsma/report/input_error.hpp"
-#include "report/folder_lock.hpp"
 #include "report/accuracy/accuracy_folder.hpp"
+#include "report/folder_lock.hpp"
 
 namespace nsma::app {
 

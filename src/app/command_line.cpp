@@ -71,9 +71,9 @@ Option flag(const char* name, bool Arguments::*value, const char* help) {
 }
 
 void bar_and_mesh(CLI::App& command, Arguments& arguments) {
-    command.add_option("--cells", arguments.cells, "cells N instead of the scene's")->check(whole(1, max_cells));
+    command.add_option("--cells", arguments.cells, "cells N instead of the scene's")->transform(whole(1, max_cells));
     command.add_option("--gap", arguments.gap, "gap d [m] instead of the scene's; negative: prestressed")
-        ->check(finite());
+        ->transform(finite());
 }
 
 void period(CLI::App& command, Arguments& arguments) {
@@ -82,7 +82,7 @@ void period(CLI::App& command, Arguments& arguments) {
         .add_option_function<std::vector<double>>("--period", set,
                                                   "periods LO HI in units of tau instead of the scene's patterns")
         ->expected(2)
-        ->check(finite());
+        ->transform(finite());
 }
 
 void method(CLI::App& command, Arguments& arguments) {
@@ -102,8 +102,8 @@ Option pattern(bool required) {
         const CLI::Validator steps = whole(1, max_period_steps / 2);
         auto* free = command.add_option("--free", arguments.free_steps, "free flight r [steps]" + of_one);
         auto* contact = command.add_option("--contact", arguments.contact_steps, "contact phase p [steps]" + of_one);
-        free->check(steps)->required(required);
-        contact->check(steps)->required(required);
+        free->transform(steps)->required(required);
+        contact->transform(steps)->required(required);
         if (required) return;
         free->needs(contact);
         contact->needs(free);
@@ -119,8 +119,8 @@ void energy(CLI::App& command, Arguments& arguments) {
                            always ? "energy ratio E/E_g (joules for a closed gap); without it the least-energy orbit"
                                   : "energy ratio E/E_g of one pattern (joules for a closed gap); without it its least "
                                     "energy");
-    option->check(number<double>("NUMBER>0", fmt::format("a number from {:g} to {:g}", least_level, greatest_level),
-                                 [](double value) { return value >= least_level && value <= greatest_level; }));
+    option->transform(number<double>("NUMBER>0", fmt::format("a number from {:g} to {:g}", least_level, greatest_level),
+                                     [](double value) { return value >= least_level && value <= greatest_level; }));
     if (!always) option->needs(free);
 }
 
@@ -147,7 +147,7 @@ void solver(CLI::App& command, Arguments& arguments) {
         .add_option(
             "--starts", arguments.solver.starts,
             "starts per solver while the optimum is not proved (default 8; a quarter of them above 64 unknowns)")
-        ->check(whole(1, 10'000));
+        ->transform(whole(1, 10'000));
 }
 
 struct Entry {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include <mpi.h>
 #include <fcntl.h>
+#include <mpi.h>
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -128,8 +128,7 @@ struct Crew::Implementation {
     void split() {
         int down[2], up[2];
         // What MPI starts must not keep the child's pipes open.
-        if (pipe2(down, O_CLOEXEC) != 0 || pipe2(up, O_CLOEXEC) != 0)
-            throw std::runtime_error("cannot make a pipe");
+        if (pipe2(down, O_CLOEXEC) != 0 || pipe2(up, O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe");
         child = fork();
         if (child < 0) throw std::runtime_error("cannot start a process");
         is_child = child == 0;

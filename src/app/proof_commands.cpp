@@ -68,7 +68,8 @@ int run_prove(const Arguments& arguments) {
     if (whole) file.put_in_place();
     fmt::print("{} patterns, {} proved; {} admissible ({}), greatest energy exact for {}\n{} {}\n", counts.done,
                counts.proved, counts.admissible.total(), counts.admissible.text(), counts.exact,
-               whole ? "certificates are in" : "interrupted: those so far are in", whole ? arguments.out : arguments.out + ".part");
+               whole ? "certificates are in" : "interrupted: those so far are in",
+               whole ? arguments.out : arguments.out + ".part");
     if (!whole) return exit_interrupted;
     return counts.proved == total ? exit_done : exit_solver;
 }

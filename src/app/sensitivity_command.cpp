@@ -31,8 +31,7 @@ int run_sensitivity(const Arguments& arguments) {
             fmt::print("chart    {}\n", picture.string());
     }
     if (summary.left > 0 && summary.left == summary.admissible) {
-        say("no pattern of the scene is a contact motion; --all-kinds studies the other {}",
-                   summary.left);
+        say("no pattern of the scene is a contact motion; --all-kinds studies the other {}", summary.left);
     }
     if (summary.interrupted) return exit_interrupted;
     if (summary.failed > 0) return exit_solver;

@@ -10,9 +10,9 @@
 #include "progress.hpp"
 #include "standard_streams.hpp"
 
+#include "nsma/numerics/interruption.hpp"
 #include "study/sweep/sweep_queue.hpp"
 #include "study/sweep/work_messages.hpp"
-#include "nsma/numerics/interruption.hpp"
 #include "report/folder_lock.hpp"
 #include "report/sweep/sweep_charts.hpp"
 #include "report/sweep/sweep_export.hpp"
@@ -144,8 +144,7 @@ int run_sweep(const Arguments& arguments) {
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
     if (summary.left > 0 && summary.left == summary.admissible) {
         std::fflush(stdout);
-        say("no pattern of the scene is a contact motion; --all-kinds solves the other {}",
-                   summary.left);
+        say("no pattern of the scene is a contact motion; --all-kinds solves the other {}", summary.left);
     }
     const bool found = summary.levels > 0 ? summary.solved > 0 : summary.admissible > summary.left;
     return found ? exit_done : exit_inadmissible;

@@ -26,11 +26,14 @@ PatternProblem pattern_problem(const Pattern& pattern, int gap_sign, const Patte
     validate(pattern);
     PatternProblem problem;
     problem.kernel = exact_kernel(pattern);
-    Reduction reduction = reduce(conditions(problem.kernel, gap_sign));
-    if (reduction.empty_because.empty() && reduction.variables() > max_unknowns) {
+    const Conditions limits = conditions(problem.kernel, gap_sign);
+    const bool many = problem.kernel.dimension() > max_unknowns;
+    const bool chain = many && limits.bound_of.front() == Conditions::Sign::free;
+    Reduction reduction = chain ? Reduction() : reduce(limits);
+    if (many && (chain || reduction.empty_because.empty())) {
         problem.verdict = Verdict::failed;
         problem.set.reason = "expected at most " + std::to_string(max_unknowns) + " unknowns, got " +
-                             std::to_string(reduction.variables()) + "; scan --method integers gives the verdict";
+                             std::to_string(problem.kernel.dimension()) + "; scan --method integers gives the verdict";
         return problem;
     }
     problem.set = admissible_set(std::move(reduction));

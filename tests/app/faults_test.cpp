@@ -192,7 +192,7 @@ TEST_F(Faults, ExportKeepsTheTablesThatAreThere) {
 
 TEST_F(Faults, WhatTheCheckerCouldNotReadIsNotValid) {
     if (!can_trace()) GTEST_SKIP() << "no strace, or no right to trace";
-    ASSERT_EQ(run({"prove", scene_, "--cells", "10", "--period", "0", "4", "--out", path("proofs"), "--quiet"}).code,
+    ASSERT_EQ(run({"prove", scene_, "--cells", "14", "--period", "0", "4", "--out", path("proofs"), "--quiet"}).code,
               0);
     ASSERT_GT(fs::file_size(folder_ / "proofs"), 2U << 16U);  // several reads
     Words disturb = strace("read", "error=EIO", 2);

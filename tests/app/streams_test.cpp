@@ -147,7 +147,7 @@ TEST_F(Surroundings, VariablesOfAnotherLaunchMakeNoRanks) {
 
 TEST_F(Surroundings, WhatCannotBeReadSaysWhy) {
     fs::create_directory(path("shut"));
-    fs::permissions(folder_, fs::perms::others_all, fs::perm_options::add);
+    fs::permissions(folder_, fs::perms::all, fs::perm_options::add);
     fs::permissions(path("shut"), fs::perms::none);
     for (const Words& words : {Words{"export", path("shut")}, Words{"plot", path("shut")}}) {
         const pid_t child =
@@ -217,7 +217,9 @@ TEST_F(Surroundings, AForgedCertificateKeepsNobodyBusy) {
          "steps and columns over all forms"},
         {head + std::string(80'000, '[') + std::string(80'000, ']') + "}", "expected brackets at most 16 deep"},
         {head + std::string(80'000, '['), "expected brackets at most 16 deep"},
-        {head + "6,\"" + std::string(5000, 'k') + "\":1}", "kkk..."}};
+        {head + R"(6,"free_steps":16,"contact_steps":4,"gap_sign":1,"claim":"empty",)" + "\"" + std::string(5000, 'k') +
+             "\":1}",
+         "kkk..."}};
     for (const auto& [text, reason] : forged) {
         const pid_t child = start({"check", write("forged.jsonl", text + "\n")});
         EXPECT_TRUE(process::wait_for([&] { return process::ended(child); }, 30)) << reason;

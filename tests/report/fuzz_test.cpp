@@ -41,7 +41,7 @@ private:
         if (text.empty()) return;
         const std::size_t at = below(text.size());
         const std::size_t length = std::min(1 + below(12), text.size() - at);
-        switch (below(9)) {
+        switch (below(10)) {
             case 0: text[at] = static_cast<char>(text[at] ^ (1 << below(8))); return;
             case 1: text[at] = "0123456789-/.,:\"[]{}=#\\ \n\t\0e"[below(29)]; return;
             case 2: text.erase(at, length); return;
@@ -61,6 +61,14 @@ private:
                 const std::string high = text.substr(b.first, b.second);
                 text.replace(b.first, b.second, low);
                 text.replace(a.first, a.second, high);
+                return;
+            }
+            case 7: {  // depth: brackets in brackets, keys of many parts
+                static const std::vector<std::string> parts{"[", "{", "]", "a.", "[[", "{a=", ".", "{\"a\":["};
+                const std::string& part = parts[below(parts.size())];
+                std::string deep;
+                for (std::size_t k = std::size_t{1} << below(14); k > 0; --k) deep += part;
+                text.insert(at, deep);
                 return;
             }
             default: {  // numbers: the mutation that keeps the syntax

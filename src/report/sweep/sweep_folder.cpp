@@ -59,9 +59,10 @@ fs::path prepare_sweep_folder(const fs::path& folder, const Scene& scene) {
 
 void expect_sweep_folder(const fs::path& folder) {
     std::error_code code;
-    if (!fs::is_directory(folder, code)) {
-        fail(folder,
-             fmt::format("expected the folder of a sweep, got {}", fs::exists(folder, code) ? "a file" : "nothing"));
+    const fs::file_status status = fs::status(folder, code);
+    if (status.type() == fs::file_type::none) fail(folder, fmt::format("cannot be read: {}", code.message()));
+    if (!fs::is_directory(status)) {
+        fail(folder, fmt::format("expected the folder of a sweep, got {}", fs::exists(status) ? "a file" : "nothing"));
     }
     for (const char* store : {"results.sqlite", "results.sqlite.part"}) {
         if (fs::exists(folder / store, code)) return;

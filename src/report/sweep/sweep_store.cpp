@@ -28,6 +28,14 @@ constexpr const char* format = "4";
 constexpr std::array info_keys{"format",  "scene", "scene_hash", "title",   "software",
                                "options", "kinds", "complete",   "results", "seconds"};
 
+// A braced list of values would do, but for gcc 12: when memory ends in the middle of one it destroys what is not
+// there.
+RecordRow row_with(std::initializer_list<const std::string*> texts) {
+    RecordRow row;
+    for (const std::string* text : texts) row.emplace_back(*text);
+    return row;
+}
+
 void add(FnvHash& hash, const std::string& text) {
     hash.add(text.size());
     for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
@@ -120,7 +128,7 @@ struct SweepStore::Implementation {
     [[nodiscard]] std::string info(const std::string& key) const {
         return guarded("read", [&] {
             DatabaseStatement query(*database, "SELECT value, checksum FROM sweep WHERE key = ?");
-            query.select({}, {key});
+            query.select({}, row_with({&key}));
             const RecordRow row = query.step() ? query.row(0) : RecordRow();
             const std::string* value = row.empty() ? nullptr : std::get_if<std::string>(row.data());
             if (value == nullptr || row[1] != FieldValue(hash_of(key + "=" + *value)))
@@ -140,10 +148,9 @@ struct SweepStore::Implementation {
 
     void set_info(const std::string& key, const std::string& value) {
         guarded("written", [&] {
-            RecordRow row;
-            for (const std::string& text : {key, value, hash_of(key + "=" + value)}) row.emplace_back(text);
+            const std::string sum = hash_of(key + "=" + value);
             DatabaseStatement(*database, "INSERT OR REPLACE INTO sweep (key, value, checksum) VALUES (?, ?, ?)")
-                .insert({}, row);
+                .insert({}, row_with({&key, &value, &sum}));
         });
     }
 
@@ -241,7 +248,7 @@ struct SweepStore::Implementation {
         for (std::size_t run = 0; run < rows.runs.size(); ++run) {
             inserts->run.insert({rows.pattern, rows.place, static_cast<int>(run)}, rows.runs[run]);
         }
-        if (!beta.empty()) inserts->orbit.insert({rows.pattern, rows.place}, {beta});
+        if (!beta.empty()) inserts->orbit.insert({rows.pattern, rows.place}, row_with({&beta}));
     }
 
     // The result of rows that were read, its record with the checksum at its end.
@@ -329,40 +336,42 @@ void SweepStore::put(const std::vector<WorkResult>& results) {
 
 void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
     const auto& self = *implementation_;
-    long decided = 0;
-    long answered = 0;
     struct Queries {
         DatabaseStatement patterns, answers, runs, orbit;
     };
-    auto [patterns, answers, runs, orbit] = self.guarded("read", [&] {
+    Queries query = self.guarded("read", [&] {
         Database& database = *self.database;
         return Queries{{database, "SELECT * FROM patterns ORDER BY number"},
                        {database, "SELECT * FROM answers WHERE pattern = ? ORDER BY place"},
                        {database, "SELECT * FROM solves WHERE pattern = ? AND place = ? ORDER BY run"},
                        {database, "SELECT * FROM orbits WHERE pattern = ? AND place = ?"}};
     });
-    const auto next = [&self](DatabaseStatement& query) { return self.guarded("read", [&] { return query.step(); }); };
-    while (next(patterns)) {
-        const long pattern = self.guarded("read", [&] { return patterns.integer(0); });
-        ++decided;
-        visit(self.result({pattern, -1, self.guarded("read", [&] { return patterns.row(1); }), {}, {}}, {}));
-        self.guarded("read", [&] { answers.select({pattern}); });
-        while (next(answers)) {
-            std::string beta;
-            ResultRows rows{pattern, 0, {}, {}, {}};
-            self.guarded("read", [&] {
-                rows.place = static_cast<int>(answers.integer(1));
-                rows.record = answers.row(2);
-                runs.select({pattern, rows.place});
-                while (runs.step()) rows.runs.push_back(runs.row(3));
-                orbit.select({pattern, rows.place});
-                if (orbit.step()) beta = orbit.text(2);
-            });
-            ++answered;
-            visit(self.result(std::move(rows), beta));
-        }
+    // Each reads the next result, false where there is none. What `visit` throws is none of the store's.
+    ResultRows rows;
+    std::string beta;
+    const auto next_pattern = [&] {
+        if (!query.patterns.step()) return false;
+        rows = {query.patterns.integer(0), -1, query.patterns.row(1), {}, {}};
+        beta.clear();
+        query.answers.select({rows.pattern});
+        return true;
+    };
+    const auto next_answer = [&] {
+        if (!query.answers.step()) return false;
+        rows = {rows.pattern, static_cast<int>(query.answers.integer(1)), query.answers.row(2), {}, {}};
+        query.runs.select({rows.pattern, rows.place});
+        while (query.runs.step()) rows.runs.push_back(query.runs.row(3));
+        query.orbit.select({rows.pattern, rows.place});
+        beta = query.orbit.step() ? query.orbit.text(2) : std::string();
+        return true;
+    };
+    long patterns = 0;
+    long answers = 0;
+    for (; self.guarded("read", next_pattern); ++patterns) {
+        visit(self.result(rows, beta));
+        for (; self.guarded("read", next_answer); ++answers) visit(self.result(rows, beta));
     }
-    const std::string found = Implementation::count_text(decided, answered);
+    const std::string found = Implementation::count_text(patterns, answers);
     if (complete() && self.info("results") != found)
         self.damaged("file", fmt::format("expected {}, got {}", self.info("results"), found));
 }
