@@ -83,7 +83,8 @@ Rational chain_bound(const CertificateTerms& terms, const GreatestProof& proof) 
             const auto& bound = proof.chain_bounds[2 * (k - 1) + (side > 0 ? 0 : 1)];
             const Fractions form = terms.dense(bound.form, "form");
             for (std::size_t j = 0; j < terms.dimension; ++j) {
-                if (form.numerators[j] != side * partial[j] * form.denominator) invalid("chain: bound " + std::to_string(k) + " is of another form");
+                if (form.numerators[j] != side * partial[j] * form.denominator)
+                    invalid("chain: bound " + std::to_string(k) + " is of another form");
             }
             (side > 0 ? upper : lower)[k] = side * terms.verified(bound);
         }

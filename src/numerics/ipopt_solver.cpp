@@ -250,6 +250,12 @@ Ipopt::SmartPtr<Ipopt::IpoptApplication> made_application(const SolverOptions& o
 }  // namespace
 
 IpoptSolver::IpoptSolver(const SolverOptions& options) : implementation_(std::make_unique<Implementation>()) {
+    const auto refuse = [](const char* what, double got) {
+        throw std::invalid_argument(std::string(what) + ", got " + std::to_string(got));
+    };
+    if (!(options.tolerance > 0)) refuse("tolerance: expected > 0", options.tolerance);
+    if (options.max_iterations < 0) refuse("max_iterations: expected >= 0", options.max_iterations);
+    if (!(options.time_limit > 0)) refuse("time_limit: expected > 0 s", options.time_limit);
     implementation_->options = options;
 }
 

@@ -18,7 +18,7 @@ namespace {
 // Fields keep their order, so that equal certificates are equal bytes.
 using Json = nlohmann::ordered_json;
 constexpr int format_version = 2;
-constexpr int deepest = 16;  // brackets; those of a certificate go five deep
+constexpr int deepest = 16;                                        // brackets; those of a certificate go five deep
 constexpr std::array claim_names{"trivial", "empty", "nonempty"};  // by Claim
 
 // Visits the fields of a certificate in the order of the file.
@@ -173,8 +173,8 @@ std::string certificate_json(const Certificate& certificate) {
 
 Certificate parse_certificate(std::string_view text, const std::string& where) {
     if (const auto place = too_deep(text, deepest)) {
-        throw InputError(where + ": expected brackets at most " + std::to_string(deepest) +
-                         " deep, got more at byte " + std::to_string(*place + 1));
+        throw InputError(where + ": expected brackets at most " + std::to_string(deepest) + " deep, got more at byte " +
+                         std::to_string(*place + 1));
     }
     const Json json = Json::parse(text, nullptr, false);
     if (json.is_discarded()) {

@@ -25,7 +25,8 @@ bool whole(const fs::path& picture) {
     constexpr int tail = 16;
     file.seekg(-tail, std::ios::end);
     std::string end(tail, '\0');
-    return file.read(end.data(), tail) && end.find(picture.extension() == ".svg" ? "</svg>" : "IEND") != std::string::npos;
+    return file.read(end.data(), tail) &&
+           end.find(picture.extension() == ".svg" ? "</svg>" : "IEND") != std::string::npos;
 }
 
 /// Runs `gnuplot NAME.gp` in the folder; returns whether it succeeded and what it said.

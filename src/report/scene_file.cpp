@@ -255,15 +255,16 @@ Scene parse_scene(std::string_view text, const std::string& where) {
     }
     if (const auto place = too_deep(text, deepest)) {
         const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(*place), '\n');
-        throw InputError(one_line(fmt::format("{}:{}: expected brackets and keys at most {} deep, got more", where,
-                                              line, deepest)));
+        throw InputError(
+            one_line(fmt::format("{}:{}: expected brackets and keys at most {} deep, got more", where, line, deepest)));
     }
     toml::table table;
     try {
         table = toml::parse(text, std::string_view(where));
     } catch (const toml::parse_error& error) {
-        throw InputError(one_line(fmt::format("{}:{}: expected TOML, got a syntax error: {}", where,
-                                              error.source().begin.line, shortened(std::string(error.description()), 200))));
+        throw InputError(
+            one_line(fmt::format("{}:{}: expected TOML, got a syntax error: {}", where, error.source().begin.line,
+                                 shortened(std::string(error.description()), 200))));
     }
     SceneText source{where, {}};
     for (std::size_t at = 0; at < text.size();) {

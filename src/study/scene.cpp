@@ -77,10 +77,10 @@ struct Count {
 void expect_feasible(const Scene& scene) {
     const std::int64_t patterns = std::visit(Count{scene}, scene.patterns);
     if (patterns > max_patterns) {
-        throw std::invalid_argument(
-            fmt::format("patterns: expected at most {}, got {}: fewer cells, shorter periods or fewer contact durations "
-                        "make fewer",
-                        max_patterns, patterns));
+        throw std::invalid_argument(fmt::format(
+            "patterns: expected at most {}, got {}: fewer cells, shorter periods or fewer contact durations "
+            "make fewer",
+            max_patterns, patterns));
     }
     const auto levels = static_cast<std::int64_t>(scene.levels.size());
     if (patterns * levels > max_pattern_levels) {

@@ -101,7 +101,8 @@ TEST(Tables, ScanTableIsAligned) {
     open.interval = EnergyInterval{};
     open.interval.least = 9.0;
     open.interval.unbounded = true;
-    std::istringstream lines(scan_table_header(Bar{}) + "\n" + scan_table_row(admissible_record()) + "\n" + scan_table_row(open));
+    std::istringstream lines(scan_table_header(Bar{}) + "\n" + scan_table_row(admissible_record()) + "\n" +
+                             scan_table_row(open));
     std::size_t width = 0;
     int count = 0;
     for (std::string line; std::getline(lines, line); ++count) {

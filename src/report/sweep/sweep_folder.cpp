@@ -13,11 +13,13 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string summary_json(const SweepSummary& summary) {
-    nlohmann::ordered_json json;
+    // Made as an object: the library does not survive that memory ends where it makes one of a null.
+    auto json = nlohmann::ordered_json::object();
     json["patterns"] = summary.patterns;
     json["trivial"] = summary.trivial;
     json["inadmissible"] = summary.inadmissible;
     json["admissible"] = summary.admissible;
+    json["kinds"] = nlohmann::ordered_json::object();
     for (const PatternKind kind : pattern_kinds)
         json["kinds"][std::string(name(kind))] = summary.kinds[static_cast<std::size_t>(kind)];
     json["left"] = summary.left;
