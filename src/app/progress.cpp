@@ -1,5 +1,6 @@
 #include "progress.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -30,13 +31,21 @@ void Progress::show(long done, long total) {
     const std::string figures =
         fmt::format("{}/{} ({:.0f} %), {:.1f}/s, {:.0f} s left", done, total, 100 * share, rate, left);
     if (terminal_) {
-        constexpr int width = 24;
+        // A line that wraps would be drawn below itself again and again.
+        winsize size{};
+        const std::size_t room =
+            ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col - 1U : 79U;
+        constexpr std::size_t width = 24;
         const auto full = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * width);
-        const std::string bar = std::string(full, '#') + std::string(width - full, '.');
-        fmt::print(stderr, "\r\x1b[K{} [{}] {}", what_, bar, figures);
+        const std::string bar = fmt::format(" [{}{}]", std::string(full, '#'), std::string(width - full, '.'));
+        std::string line = what_ + bar + " " + figures;
+        if (line.size() > room) line = what_ + " " + figures;
+        line.resize(std::min(line.size(), room));
+        line.insert(0, "\r\x1b[K");
+        std::fputs(line.c_str(), stderr);
         drawn_ = true;
     } else {
-        fmt::print(stderr, "{}: {}\n", what_, figures);
+        std::fputs(fmt::format("{}: {}\n", what_, figures).c_str(), stderr);
     }
     std::fflush(stderr);
 }

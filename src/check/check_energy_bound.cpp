@@ -25,6 +25,7 @@ Rational best_chain(const CertificateTerms& terms, const std::vector<int>& chain
     for (const int column : chain)
         weights = common_multiple(weights, abs(Integer(terms.contact[static_cast<std::size_t>(column)])));
     std::vector<Integer> scaled;
+    scaled.reserve(values.size());
     for (const Rational& value : values) scaled.push_back(numerator(value) * (common / denominator(value)));
     std::vector<std::optional<Integer>> best(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {

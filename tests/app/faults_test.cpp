@@ -130,6 +130,7 @@ TEST_F(Faults, ASweepSurvivesEveryReadThatFails) {
             expect_tables_of("out");  // those before, or the same again
         });
         EXPECT_GE(faults, 1) << call.name;
+        RecordProperty(call.name, faults);
     }
     EXPECT_EQ(run({"export", path("out")}).code, 0);
     EXPECT_EQ(run(sweep("out", {"--resume"})).code, whole.code);
@@ -164,7 +165,7 @@ TEST_F(Faults, ProofsAreWholeOrNotThere) {
     };
     ASSERT_EQ(run(prove("whole")).code, 0);
     for (const Call& call : {Call{"write", "ENOSPC"}, {"fsync", "EIO"}, {"rename", "ENOSPC"}, {"close", "EIO"}}) {
-        each_fault(call, prove("out"), "out", [&](const Ended& ended) {
+        const int faults = each_fault(call, prove("out"), "out", [&](const Ended& ended) {
             expect_orderly(ended, 0);
             if (fs::exists(folder_ / "out")) {
                 EXPECT_EQ(contents(folder_ / "out"), contents(folder_ / "whole"));
@@ -174,6 +175,8 @@ TEST_F(Faults, ProofsAreWholeOrNotThere) {
                 EXPECT_EQ(contents(folder_ / "out"), contents(folder_ / "whole"));
             }
         });
+        EXPECT_GE(faults, 1) << call.name;
+        RecordProperty(call.name, faults);
     }
 }
 
@@ -182,10 +185,11 @@ TEST_F(Faults, ExportKeepsTheTablesThatAreThere) {
     (void)run(sweep("whole"));
     fs::copy(folder_ / "whole", folder_ / "out", fs::copy_options::recursive);
     for (const Call& call : outputs) {
-        each_fault(call, {"export", path("out")}, "nothing", [&](const Ended& ended) {
+        const int faults = each_fault(call, {"export", path("out")}, "nothing", [&](const Ended& ended) {
             expect_orderly(ended, 0);
             expect_tables_of("out");
         });
+        RecordProperty(call.name, faults);
     }
     EXPECT_EQ(run({"export", path("out")}).code, 0);
 }
