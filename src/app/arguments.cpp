@@ -10,28 +10,42 @@ namespace nsma::app {
 
 Scene Arguments::scene() const {
     if (period && !(0 <= (*period)[0] && (*period)[0] <= (*period)[1])) {
-        throw InputError("command line: --period: expected 0 <= LO <= HI, got " + std::to_string((*period)[0]) + " " +
-                         std::to_string((*period)[1]));
+        throw InputError(
+            fmt::format("command line: --period: expected 0 <= LO <= HI, got {:g} {:g}", (*period)[0], (*period)[1]));
     }
     Scene scene = read_scene(input);
     if (cells) scene.mesh.cells = *cells;
+    const double unit = scene.bar.energy_unit();
     if (gap) scene.bar.gap = *gap;
+    if (gap && scene.joules) {
+        for (double& level : scene.levels) level *= unit / scene.bar.energy_unit();
+    }
     if (period) scene.patterns = PeriodSelection{*period, std::nullopt};
     if (objective) scene.objective = *objective;
     if (all_kinds) scene.all_kinds = true;
-    try {
-        validate(scene.bar);
-        validate(scene.mesh);
+    const auto checked = [this](bool said_here, const auto& check) {
+        try {
+            check();
+        } catch (const std::invalid_argument& error) {
+            throw InputError((said_here ? "command line" : input) + ": " + error.what());
+        }
+    };
+    checked(gap.has_value(), [&] { validate(scene.bar); });
+    checked(cells.has_value(), [&] { validate(scene.mesh); });
+    checked(cells || period, [&] {
         if (free_steps == 0) expect_feasible(scene);
-    } catch (const std::invalid_argument& error) {
-        throw InputError((cells || gap || period ? "command line: " : input + ": ") + error.what());
-    }
+    });
     return scene;
 }
 
 std::vector<Pattern> Arguments::patterns(const Scene& scene) const {
     if (free_steps > 0) return {{scene.mesh.cells, free_steps, contact_steps}};
     return patterns_of(scene);
+}
+
+std::optional<double> Arguments::level(const Scene& scene) const {
+    if (!energy || !joules) return energy;
+    return *energy / scene.bar.energy_unit();
 }
 
 void Arguments::check_energy(const Scene& scene, const std::string& objective_from) const {

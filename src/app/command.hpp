@@ -19,7 +19,8 @@ struct Arguments {
     std::optional<std::array<double, 2>> period;  ///< [lo, hi] in units of tau
     int free_steps = 0;                           ///< of one pattern; 0: none named
     int contact_steps = 0;
-    std::optional<double> energy;  ///< of one pattern
+    std::optional<double> energy;  ///< of one pattern, in E_g; joules for a closed gap
+    bool joules = false;           ///< energy is in joules
     std::optional<Objective> objective;
     OrbitSolverOptions solver;
     ScanMethod method = ScanMethod::certified;
@@ -35,6 +36,8 @@ struct Arguments {
     [[nodiscard]] Scene scene() const;
     /// The one pattern that was named, or all of the scene.
     [[nodiscard]] std::vector<Pattern> patterns(const Scene& scene) const;
+    /// The energy in units of the scene's bar.
+    [[nodiscard]] std::optional<double> level(const Scene& scene) const;
     /// Throws InputError where the objective or the gap of the scene does not go with the energy, or with none for one
     /// pattern; `objective_from` says where the objective stands.
     void check_energy(const Scene& scene, const std::string& objective_from) const;

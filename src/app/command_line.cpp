@@ -111,16 +111,34 @@ Option pattern(bool required) {
     };
 }
 
+// An energy and whether it is in joules: 12.6, 0.8J.
+std::optional<std::pair<double, bool>> energy_in(std::string_view word) {
+    const bool joules = word.ends_with('J');
+    if (joules) word.remove_suffix(1);
+    const auto value = number_in<double>(word);
+    if (!value || !(*value >= least_level && *value <= greatest_level)) return std::nullopt;
+    return std::pair{*value, joules};
+}
+
 void energy(CLI::App& command, Arguments& arguments) {
     auto* const free = command.get_option("--free");
     const bool always = free->get_required();
-    auto* const option =
-        command.add_option("--energy", arguments.energy,
-                           always ? "energy ratio E/E_g (joules for a closed gap); without it the least-energy orbit"
-                                  : "energy ratio E/E_g of one pattern (joules for a closed gap); without it its least "
-                                    "energy");
-    option->transform(number<double>("NUMBER>0", fmt::format("a number from {:g} to {:g}", least_level, greatest_level),
-                                     [](double value) { return value >= least_level && value <= greatest_level; }));
+    const auto set = [&](const std::string& word) {
+        const auto [value, joules] = energy_in(word).value();
+        arguments.energy = value;
+        arguments.joules = joules;
+    };
+    auto* const option = command.add_option_function<std::string>(
+        "--energy", set,
+        always ? "energy E/E_g, or in joules with a J behind it: 12.6, 0.8J; without it the least-energy orbit"
+               : "energy of one pattern, E/E_g or in joules with a J behind it; without it its least energy");
+    const auto refusal = [](const std::string& word) {
+        return energy_in(word)
+                   ? std::string()
+                   : fmt::format("expected a number from {:g} to {:g}, in joules with a J behind it, got {}",
+                                 least_level, greatest_level, shortened(word));
+    };
+    option->check({refusal, "NUMBER[J]"});
     if (!always) option->needs(free);
 }
 
@@ -269,7 +287,8 @@ std::optional<Command> read_command_line(int count, const char* const* words) {
         command->callback([&chosen, run = entry.run] { chosen.run = run; });
     }
     const std::string_view word = count > 1 ? words[1] : "none";
-    if (!word.starts_with('-') && std::find(names.begin(), names.end(), word) == names.end()) {
+    const bool asks = word == "--help" || word == "-h" || word == "--version";
+    if (!asks && std::find(names.begin(), names.end(), word) == names.end()) {
         throw InputError(one_line(fmt::format("command line: expected one of {}, got {} (see nsma --help)",
                                               fmt::join(names, ", "), shortened(std::string(word)))));
     }

@@ -117,7 +117,7 @@ int run_orbit(const Arguments& arguments) {
     arguments.check_energy(scene, "command line: --objective");
     OrbitRequest request;
     request.objective = scene.objective;
-    request.level = arguments.energy;
+    request.level = arguments.level(scene);
     const PatternProblem problem = pattern_problem(arguments.patterns(scene).front(), scene.bar.gap_sign());
     const OrbitAnswer answer = OrbitSolver(arguments.solver).solve(scene.bar, problem, request);
     if (arguments.json) {

@@ -15,7 +15,7 @@ int run_sensitivity(const Arguments& arguments) {
     arguments.check_energy(scene, arguments.input + ": objective");
     SensitivityRequest request;
     request.solver = arguments.solver;
-    request.level = arguments.energy;
+    request.level = arguments.level(scene);
     if (arguments.free_steps > 0) request.pattern = arguments.patterns(scene).front();
     const FolderLock lock(arguments.out);
     open_sensitivity_folder(arguments.out, scene);

@@ -23,13 +23,14 @@ void Sieve::prepare(int period_steps) {
     step_ = (2 * cells_ / classes_) % places_;
     of_free_.assign(index(places_) + 1, Place{});
     sign_.resize(index(places_));
+    // Decided by a walk, once it is asked for.
     const auto decide = [this](int contact_places) {
         const int free_places = places_ - contact_places;
-        if (free_places % 2 == 0) of_free_[index(free_places)] = walk(free_places);
+        if (free_places % 2 == 0) of_free_[index(free_places)].walked = false;
     };
     if (places_ % 2 == 0) {
         // No contact place: the signs alternate, x_0 = -P_m.
-        of_free_[index(places_)] = {gap_sign_ > 0 ? Finding::admissible : Finding::wrong_side, 1};
+        of_free_[index(places_)] = {gap_sign_ > 0 ? Finding::admissible : Finding::wrong_side, true, 1};
     }
     decide(1);
     if (places_ == 1) return;
@@ -64,13 +65,13 @@ Sieve::Place Sieve::walk(int free_places) {
         return std::accumulate(sign_.begin(), sign_.begin() + end, std::int64_t{0});
     };
     const std::int64_t weight = -side * (window / places_ * sum_to(places_) + sum_to(window % places_));
-    if (gap_sign_ == 0 ? weight != 0 : gap_sign_ * weight <= 0) return {Finding::wrong_side, 0};
+    if (gap_sign_ == 0 ? weight != 0 : gap_sign_ * weight <= 0) return {Finding::wrong_side, true, 0};
     int height = 0;
     for (int place = 0; place < free_places; ++place) {
         height += side * sign_[index(place)];
-        if (height > 0) return {Finding::penetrates, 0};
+        if (height > 0) return {Finding::penetrates, true, 0};
     }
-    return {Finding::admissible, static_cast<std::int32_t>(std::abs(weight))};
+    return {Finding::admissible, true, static_cast<std::int32_t>(std::abs(weight))};
 }
 
 Sieved Sieve::operator()(int free_steps, int contact_steps) {
@@ -86,7 +87,8 @@ Sieved Sieve::operator()(int free_steps, int contact_steps) {
     result.kernel_dimension = q % 2 == 0 ? classes_ - s : s;
     if (result.kernel_dimension == 0) return result;
     const int free_places = q % 2 == 0 ? q : q + 1;  // of the live classes
-    const Place& place = of_free_[index(free_places)];
+    Place& place = of_free_[index(free_places)];
+    if (!place.walked) place = walk(free_places);
     result.finding = place.finding;
     if (place.finding != Finding::admissible) return result;
     if (gap_sign_ == 0) {

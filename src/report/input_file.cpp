@@ -30,6 +30,7 @@ InputFile::InputFile(std::filesystem::path file, const std::string& what) : path
         close(file_);
         fail(path_, fmt::format("expected {}, got a directory", what));
     }
+    waits_ = !S_ISREG(status.st_mode);
 }
 
 InputFile::~InputFile() { close(file_); }
@@ -37,11 +38,9 @@ InputFile::~InputFile() { close(file_); }
 // The next bytes into the empty buffer; false at the end of the file.
 bool InputFile::fill() {
     for (;;) {
+        if (waits_) stop_point();
         pollfd ready{file_, POLLIN, 0};
-        if (poll(&ready, 1, look_again) <= 0) {
-            stop_point();
-            continue;
-        }
+        if (poll(&ready, 1, look_again) <= 0) continue;
         const ssize_t got = read(file_, buffer_.data(), buffer_.size());
         if (got >= 0) {
             at_ = 0;

@@ -29,6 +29,7 @@ private:
 
     std::filesystem::path path_;
     int file_ = -1;
+    bool waits_ = false;  // for a writer, which may never write
     std::vector<char> buffer_;
     std::size_t at_ = 0, end_ = 0;  // in the buffer
     long lines_ = 0;

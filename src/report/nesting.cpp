@@ -14,7 +14,10 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
         if (mark == '"' && text[at] == '\\') {
             ++at;
         } else if (text.substr(at, close.size()) == close) {
-            return at + close.size();
+            std::size_t end = at + close.size();
+            // Up to two more marks belong to the text of several lines that they end.
+            for (int more = 0; lines && more < 2 && end < text.size() && text[end] == mark; ++more) ++end;
+            return end;
         } else if (!lines && text[at] == '\n') {
             return at;  // left open
         }

@@ -63,7 +63,8 @@ std::string orbit_json(const OrbitAnswer& answer, const Bar& bar, bool with_seco
                                  ? object(values, "same_", {"free_steps", "contact_steps", "shift_steps", "reversed"})
                                  : Json();
     json.update(object(values, "",
-                       {"reason", "level", "energy_ratio", "energy_ratio_min", "energy_ratio_max", "energy_joule"}));
+                       {"reason", "level", "energy_ratio", "energy_ratio_min", "energy_ratio_max", "energy_joule",
+                        "frequency_hz", "peak_force_n", "impact_speed_m_s", "peak_stress_pa", "tip_min_m"}));
     json["objective"] = {{"name", json_of(values.at("objective"))}, {"value", json_of(values.at("objective_value"))}};
     json["method"] = answer.method;
     json["alpha"] = answer.orbit ? json_of(amplitudes(*answer.orbit)) : Json::array();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "nsma/orbit/physical_values.hpp"
+
 namespace nsma {
 namespace {
 
@@ -27,6 +29,7 @@ NamedValues common_values(const Bar& bar, const Record& record) {
     values["gap"] = bar.gap;
     values["period_steps"] = std::int64_t{record.pattern.period_steps()};
     values["frequency_ratio"] = record.pattern.frequency_ratio();
+    values["frequency_hz"] = 1.0 / (record.pattern.period_steps() * Mesh{record.pattern.cells}.time_step(bar));
     const EnergyInterval& interval = record.interval;
     add_energy(values, bar, "energy_ratio_min", "energy_min_joule", interval.least);
     add_energy(values, bar, "energy_ratio_max", "energy_max_joule",
@@ -44,6 +47,14 @@ NamedValues named_values(const Bar& bar, const OrbitAnswer& answer) {
     NamedValues values = common_values(bar, answer);
     values["period_s"] = answer.pattern.period_steps() * Mesh{answer.pattern.cells}.time_step(bar);
     add_energy(values, bar, "energy_ratio", "energy_joule", answer.energy);
+    for (const char* name : {"peak_force_n", "impact_speed_m_s", "peak_stress_pa", "tip_min_m"}) values[name] = {};
+    if (answer.orbit) {
+        const PhysicalValues physical = physical_values(*answer.orbit);
+        values["peak_force_n"] = physical.peak_force;
+        values["impact_speed_m_s"] = physical.impact_speed;
+        values["peak_stress_pa"] = physical.peak_stress;
+        values["tip_min_m"] = physical.tip_least;
+    }
     values["global"] = values["optimum_global"];
     if (!answer.optimality || !answer.optimality->lower_bound) values["objective_gap"] = {};
     add_run(values, "ipopt_status", "ipopt_objective", best_run(answer, "ipopt"));

@@ -219,11 +219,12 @@ std::vector<double> spaced(double from, double to, long count, bool logarithmic)
     return levels;
 }
 
-std::vector<double> read_levels(const SceneValue& section) {
+std::vector<double> read_level_numbers(const SceneValue& section) {
     constexpr const char* either = "either list or from, to, count, spacing";
-    if (section.size() == 0) section.fail(either, "neither");
+    const std::size_t keys = section.size() - (section["unit"].missing() ? 0 : 1);
+    if (keys == 0) section.fail(either, "neither");
     if (const SceneValue list = section["list"]; !list.missing()) {
-        if (section.size() != 1) section.fail(either, "both");
+        if (keys != 1) section.fail(either, "both");
         std::vector<double> levels;
         for (const SceneValue& entry : list.list("a list of finite numbers > 0"))
             levels.push_back(entry.within(least_level, greatest_level));
@@ -238,6 +239,23 @@ std::vector<double> read_levels(const SceneValue& section) {
     if (from == to && count != 1) count_value.fail("1, since from = to");
     if (from != to && count == 1) count_value.fail("at least 2, since from < to");
     return spaced(from, to, count, !linear);
+}
+
+void read_levels(const SceneValue& section, Scene& scene) {
+    scene.levels = read_level_numbers(section);
+    const SceneValue unit = section["unit"];
+    const bool closed = scene.bar.gap_sign() == 0;
+    scene.joules = unit.missing() ? closed : unit.is_second("E_g", "J");
+    if (closed && !scene.joules) unit.fail("\"J\", as a closed gap has no E_g");
+    if (closed || !scene.joules) return;
+    for (double& level : scene.levels) {
+        const double joules = level;
+        level /= scene.bar.energy_unit();
+        if (level < least_level || level > greatest_level) {
+            section.fail(fmt::format("levels from {:g} to {:g} E_g", least_level, greatest_level),
+                         fmt::format("{} J = {} E_g", joules, level));
+        }
+    }
 }
 
 Objective read_objective(const SceneValue& value) {
@@ -282,7 +300,7 @@ Scene parse_scene(std::string_view text, const std::string& where) {
     scene.patterns = read_patterns(patterns, scene.mesh.cells);
     if (const SceneValue kinds = patterns["kinds"]; !kinds.missing())
         scene.all_kinds = kinds.is_second("contact", "all");
-    scene.levels = read_levels(root.section("levels", {"list", "from", "to", "count", "spacing"}));
+    read_levels(root.section("levels", {"list", "from", "to", "count", "spacing", "unit"}), scene);
     scene.objective = read_objective(root.section("program", {"objective"})["objective"]);
     scene.text = text;
     return scene;

@@ -16,13 +16,15 @@ namespace {
 // in binary, so a bound missed by rounding only is met.
 constexpr double bound_rounding = 1e-9;
 
-int first_step(double ratio, int cells) { return static_cast<int>(std::ceil(ratio * cells - bound_rounding)); }
-int last_step(double ratio, int cells) { return static_cast<int>(std::floor(ratio * cells + bound_rounding)); }
+// Beyond the longest period all steps are alike, and a whole number could not hold them.
+int whole_step(double step) { return static_cast<int>(std::clamp(step, -1.0, max_period_steps + 1.0)); }
+int first_step(double ratio, int cells) { return whole_step(std::ceil(ratio * cells - bound_rounding)); }
+int last_step(double ratio, int cells) { return whole_step(std::floor(ratio * cells + bound_rounding)); }
 
 PatternRange range_of(const PeriodSelection& selection, int cells) {
     if (!(std::abs(selection.period[1]) * cells <= max_period_steps)) {
-        throw std::invalid_argument("period: expected at most " + std::to_string(max_period_steps) + " steps, got " +
-                                    std::to_string(selection.period[1] * cells));
+        throw std::invalid_argument(
+            fmt::format("period: expected at most {} steps, got {:g}", max_period_steps, selection.period[1] * cells));
     }
     PatternRange range;
     range.period_lo = std::max(2, first_step(selection.period[0], cells));

@@ -84,7 +84,9 @@ TEST_F(Surroundings, AReaderThatHasEnoughIsNoError) {
 
 TEST_F(Surroundings, TheFirstSignalEndsWhateverGoesOn) {
     ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-    for (const Words& words : {Words{"scan", path("pipe")}, Words{"check", path("pipe")}, long_orbit()}) {
+    const Words long_scan{"scan", write("long.toml", scene_text("1.0", "1000000", "mode = 1"))};
+    for (const Words& words : {Words{"scan", path("pipe")}, Words{"check", path("pipe")}, long_orbit(), long_scan,
+                               with(long_scan, {"--method", "integers"})}) {
         SCOPED_TRACE(words.front());
         EXPECT_EQ(ended_by(SIGTERM, words).exit_code, 143);
         const Result interrupted = ended_by(SIGINT, words);
@@ -176,6 +178,12 @@ TEST_F(Surroundings, NumbersAreDecimalAndInRange) {
         expect_refused({"scan", scene_, "--gap=" + gap}, "gap: expected");
     for (const std::string energy : {"1e-200", "1e200", "1e-400"})
         expect_refused({"orbit", scene_, "--free", "16", "--contact", "4", "--energy", energy}, "--energy: expected");
+    // Beyond every period there is no contact, and no number that wraps around.
+    const std::string beyond =
+        write("beyond.toml", scene_text("1.0", "6", "period = [2.0, 4.0]\ncontact = [1e300, 1e301]"));
+    const Result none = run({"scan", beyond, "--csv"});
+    EXPECT_EQ(none.exit_code, 3);
+    EXPECT_EQ(std::count(none.out.begin(), none.out.end(), '\n'), 1) << none.out;
     // More patterns, or levels over them, than memory holds.
     expect_refused({"scan", scene_, "--cells", "10000", "--period", "0", "4"},
                    "patterns: expected at most 10000000, got");
@@ -191,6 +199,7 @@ TEST_F(Surroundings, NumbersAreDecimalAndInRange) {
 
 TEST_F(Surroundings, WordsThatDoNotGoTogetherAreRefused) {
     expect_refused({"swep"}, "got swep");
+    expect_refused({"--foo"}, "got --foo");
     expect_refused({}, "got none");
     expect_refused({"prove", scene_, "--free", "16", "--contact", "4", "--period", "0", "4", "--out", path("out")},
                    "--period");

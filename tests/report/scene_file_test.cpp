@@ -72,6 +72,13 @@ const BadScene bad_scenes[] = {
      {"levels.from: expected a number from 1e-30"}},
     {"long_key", with("gap = 1.0", "gap = 1.0\n" + std::string(5000, 'k') + " = 1"), {"bar.kkk", "...: expected one"}},
     {"deep_key", with("gap = 1.0", "gap" + std::string(16, '.') + " = 1.0"), {"a.toml:7: expected brackets and keys"}},
+    // Text of several lines may end with five marks: two of them are its own.
+    {"deep_behind_text",
+     with("gap = 1.0", "gap = 1.0\nx = [\"\"\"x\"\"\"\", {a" + std::string(100'000, '.') + "=1}]"),
+     {"a.toml:8: expected brackets and keys"}},
+    {"deep_behind_literal",
+     with("gap = 1.0", "gap = 1.0\nx = ['''x''''', {a" + std::string(100'000, '.') + "=1}]"),
+     {"a.toml:8: expected brackets and keys"}},
     {"deep_list", with_levels("list = " + std::string(40'000, '[')), {"a.toml:13: expected brackets and keys"}},
     {"deep_table", with("gap = 1.0", "gap = " + std::string(40'000, '{')), {"a.toml:7: expected brackets and keys"}},
     {"no_cells", with("cells = 20", "cells = 0"), {"a.toml:9: mesh.cells: expected an integer", "got 0"}},

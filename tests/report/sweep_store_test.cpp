@@ -341,6 +341,30 @@ TEST_F(DamagedStore, EveryChangedValueOfEveryColumnIsRefused) {
     }
 }
 
+TEST_F(DamagedStore, OtherTablesAndRowsOfNobodyAreRefused) {
+    (void)whole(path / "whole");
+    const std::filesystem::path file = path / "whole" / "results.sqlite";
+    const std::string sound = sample::read(file);
+    const std::vector<std::pair<std::string, std::string>> changes{
+        {"DROP TABLE answers; CREATE TABLE answers(pattern, place); INSERT INTO answers VALUES(0, 0)", "table answers"},
+        {"DROP TABLE patterns; CREATE TABLE patterns(number); INSERT INTO patterns VALUES(0)", "table patterns"},
+        {"DROP TABLE orbits", "table orbits: is missing"},
+        {"DROP TABLE sweep", "empty store"},
+        {"DROP VIEW timings", "table timings"},
+        {"ALTER TABLE solves ADD COLUMN more", "table solves: has other columns"},
+        {"INSERT INTO orbits VALUES (99, 99, '[1]')", "orbits"},
+        {"INSERT INTO solves (pattern, place, run) VALUES (99, 99, 0)", "solves"},
+        {"UPDATE answers SET pattern = 99 WHERE pattern = 0", "answers"}};
+    for (const auto& [change, named] : changes) {
+        SCOPED_TRACE(change);
+        sample::write(file, sound);
+        SQLite::Database(file, SQLite::OPEN_READWRITE).exec(change);
+        const std::string message = outcome(path / "whole", false).message;
+        expect_refused(message);
+        EXPECT_THAT(message, HasSubstr(named));
+    }
+}
+
 TEST_F(DamagedStore, LostRowsAreMissed) {
     (void)whole(path / "whole");
     const std::filesystem::path file = path / "whole" / "results.sqlite";

@@ -51,7 +51,9 @@ TEST(Tables, AClosedGapHasNoRatios) {
     PatternRecord record = admissible_record();
     record.gap_sign = 0;
     EXPECT_EQ(scan_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,,contact");
-    EXPECT_EQ(patterns_csv_row(bar, record), "6,0,16,4,20,4,1.2,admissible,,,contact,9,36,false,false,,,,");
+    EXPECT_EQ(
+        patterns_csv_row(bar, record),
+        "6,0,16,4,20,4,1.2,admissible,,,contact,9,36,false,false,,,,,0.30000000000000004");  // 1/(20 steps of 1/6 s)
 }
 
 TEST(Tables, EveryRowHasAsManyFieldsAsItsHeader) {
@@ -65,7 +67,9 @@ TEST(Tables, EveryRowHasAsManyFieldsAsItsHeader) {
     answer.reason = "a, b \"c\"\nd";
     const std::string row = levels_csv_row(bar, answer);
     EXPECT_EQ(fields(row), fields(levels_csv_header()));
-    EXPECT_THAT(row, testing::EndsWith(",Solve_Succeeded,1.5,XTOL_REACHED,,false,,,,,contact,false,,,,"));
+    // E = 12.5 J = 2 b^2 for waves of one size b = 2.5 m/s: the tip flies at 2b for 1.2 s from the wall, and back.
+    EXPECT_THAT(row,
+                testing::EndsWith(",Solve_Succeeded,1.5,XTOL_REACHED,,false,,,,,contact,false,,,,,0.3125,5,5,5,-5"));
     EXPECT_EQ(csv_fields(row)[10], "a, b \"c\" d");
     const auto timings = timings_csv_rows(answer);
     ASSERT_EQ(timings.size(), 3U);

@@ -44,6 +44,7 @@ public:
 private:
     struct Place {
         Finding finding = Finding::sign_conflict;
+        bool walked = true;       // false: two waits, both odd, and not yet decided
         std::int32_t weight = 0;  // |w|
     };
     void prepare(int period_steps);

@@ -24,6 +24,15 @@ constexpr const char* final_name = "results.sqlite";
 constexpr const char* part_name = "results.sqlite.part";
 // Raised with every change of the tables below, or of what a level's answer follows from.
 constexpr const char* format = "4";
+// What is made for a new store: names, and the statements that make them.
+std::vector<std::pair<std::string, std::string>> schema() {
+    std::vector<std::pair<std::string, std::string>> all{
+        {"sweep", "CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT, checksum TEXT) WITHOUT ROWID"}};
+    for (const StoreTable& table : store_tables()) all.emplace_back(table.name, table.create_sql());
+    all.emplace_back("timings", timings_view_sql);
+    return all;
+}
+
 // What the table `sweep` holds.
 constexpr std::array info_keys{"format",  "scene", "scene_hash", "title",   "software",
                                "options", "kinds", "complete",   "results", "seconds"};
@@ -118,6 +127,14 @@ struct SweepStore::Implementation {
             return query.step() ? query.text(0) : std::string("no answer");
         });
         if (said != "ok") damaged("file", said);
+        for (const auto& [table, sql] : schema()) {
+            const std::string stored = guarded("read", [&, name = table] {
+                DatabaseStatement query(*database, "SELECT sql FROM sqlite_master WHERE name = ?");
+                query.select({}, row_with({&name}));
+                return query.step() ? query.text(0) : std::string();
+            });
+            if (stored != sql) damaged("table " + table, stored.empty() ? "is missing" : "has other columns");
+        }
         for (const char* key : info_keys) (void)info(key);
     }
 
@@ -161,16 +178,23 @@ struct SweepStore::Implementation {
         return value;
     }
 
-    static std::string count_text(long patterns, long answers) {
-        return fmt::format("{} patterns, {} answers", patterns, answers);
+    // Rows by table, in words.
+    static std::string count_text(const std::array<long, 4>& rows) {
+        std::string text;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            text += fmt::format("{}{} {}", i > 0 ? ", " : "", rows.at(i), store_tables().at(i).name);
+        return text;
     }
     [[nodiscard]] std::string count_results() const {
         return guarded("read", [&] {
-            DatabaseStatement query(*database,
-                                    "SELECT (SELECT count(*) FROM patterns), (SELECT count(*) FROM answers)");
-            query.select({});
-            (void)query.step();
-            return count_text(query.integer(0), query.integer(1));
+            std::array<long, 4> rows{};
+            for (std::size_t i = 0; i < rows.size(); ++i) {
+                DatabaseStatement query(*database, fmt::format("SELECT count(*) FROM {}", store_tables().at(i).name));
+                query.select({});
+                (void)query.step();
+                rows.at(i) = query.integer(0);
+            }
+            return count_text(rows);
         });
     }
 
@@ -195,9 +219,7 @@ struct SweepStore::Implementation {
         open(part, true);
         guarded("written", [&] {
             database->transaction([&] {
-                database->execute("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT, checksum TEXT) WITHOUT ROWID");
-                for (const StoreTable& table : store_tables()) database->execute(table.create_sql());
-                database->execute(timings_view_sql);
+                for (const auto& [table, sql] : schema()) database->execute(sql);
                 const std::array<std::string, info_keys.size()> values{format,
                                                                        scene.text,
                                                                        hash_of(scene.text),
@@ -251,8 +273,8 @@ struct SweepStore::Implementation {
         if (!beta.empty()) inserts->orbit.insert({rows.pattern, rows.place}, row_with({&beta}));
     }
 
-    // The result of rows that were read, its record with the checksum at its end.
-    [[nodiscard]] WorkResult result(ResultRows rows, const std::string& beta) const {
+    // The result of rows that were read; takes the checksum from the end of its record.
+    [[nodiscard]] WorkResult result(ResultRows& rows, const std::string& beta) const {
         const std::string where = rows.place < 0
                                       ? fmt::format("table patterns, number {}", rows.pattern)
                                       : fmt::format("table answers, pattern {}, place {}", rows.pattern, rows.place);
@@ -365,15 +387,20 @@ void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
         beta = query.orbit.step() ? query.orbit.text(2) : std::string();
         return true;
     };
-    long patterns = 0;
-    long answers = 0;
+    std::array<long, 4> seen{};
+    auto& [patterns, answers, solves, orbits] = seen;
     for (; self.guarded("read", next_pattern); ++patterns) {
         visit(self.result(rows, beta));
-        for (; self.guarded("read", next_answer); ++answers) visit(self.result(rows, beta));
+        for (; self.guarded("read", next_answer); ++answers) {
+            solves += static_cast<long>(rows.runs.size());
+            if (!beta.empty()) ++orbits;
+            visit(self.result(rows, beta));
+        }
     }
-    const std::string found = Implementation::count_text(patterns, answers);
-    if (complete() && self.info("results") != found)
-        self.damaged("file", fmt::format("expected {}, got {}", self.info("results"), found));
+    const std::string found = Implementation::count_text(seen);
+    const std::string expected = complete() ? self.info("results") : found;
+    if (self.count_results() != found || expected != found)
+        self.damaged("file", fmt::format("expected {}, got {} of {}", expected, found, self.count_results()));
 }
 
 void SweepStore::finish() {

@@ -15,7 +15,7 @@ constexpr const char* scan_columns =
 constexpr const char* patterns_columns =
     "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,verdict,"
     "energy_ratio_min,energy_ratio_max,kind,energy_min_joule,energy_max_joule,energy_unbounded,proved,"
-    "energy_min_exact,energy_max_exact,energy_bound,reason";
+    "energy_min_exact,energy_max_exact,energy_bound,reason,frequency_hz";
 
 constexpr const char* levels_columns =
     "cells,gap,free_steps,contact_steps,period_steps,kernel_dimension,frequency_ratio,period_s,level,verdict,reason,"
@@ -24,7 +24,8 @@ constexpr const char* levels_columns =
     "minimal_period_steps,silent_contact_steps,wall_touches,full_support,"
     "ipopt_status,ipopt_objective,nlopt_status,nlopt_objective,"
     "verdict_proved,objective_bound,objective_gap,global,kkt_residual,kind,forceless,"
-    "same_free_steps,same_contact_steps,same_shift_steps,same_reversed";
+    "same_free_steps,same_contact_steps,same_shift_steps,same_reversed,"
+    "frequency_hz,peak_force_n,impact_speed_m_s,peak_stress_pa,tip_min_m";
 
 std::string csv_field(std::monostate) { return {}; }
 std::string csv_field(bool value) { return value ? "true" : "false"; }
