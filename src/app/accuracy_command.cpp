@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 #include "progress.hpp"
+#include "standard_streams.hpp"
 
 #include "nsma/numerics/interruption.hpp"
 #include "study/accuracy/accuracy.hpp"
@@ -41,10 +42,12 @@ int run_accuracy(const Arguments& arguments) {
     }
     folder.finish();
     const std::filesystem::path charts = std::filesystem::path(arguments.out) / "charts";
-    for (const Chart& chart : accuracy_charts(folder.results())) {
-        draw_chart(chart, charts);
-        fmt::print("chart    {}\n", (charts / (chart.name + ".png")).string());
-    }
+    draw_if_possible([&] {
+        for (const Chart& chart : accuracy_charts(folder.results())) {
+            draw_chart(chart, charts);
+            fmt::print("chart    {}\n", (charts / (chart.name + ".png")).string());
+        }
+    });
     fmt::print("results are in {}\n", arguments.out);
     return exit_done;
 }

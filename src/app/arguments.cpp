@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "standard_streams.hpp"
+
 #include "nsma/report/scene_file.hpp"
+#include "report/bar_text.hpp"
 
 namespace nsma::app {
 
@@ -13,16 +16,6 @@ Scene Arguments::scene() const {
         throw InputError(
             fmt::format("command line: --period: expected 0 <= LO <= HI, got {:g} {:g}", (*period)[0], (*period)[1]));
     }
-    Scene scene = read_scene(input);
-    if (cells) scene.mesh.cells = *cells;
-    const double unit = scene.bar.energy_unit();
-    if (gap) scene.bar.gap = *gap;
-    if (gap && scene.joules) {
-        for (double& level : scene.levels) level *= unit / scene.bar.energy_unit();
-    }
-    if (period) scene.patterns = PeriodSelection{*period, std::nullopt};
-    if (objective) scene.objective = *objective;
-    if (all_kinds) scene.all_kinds = true;
     const auto checked = [this](bool said_here, const auto& check) {
         try {
             check();
@@ -30,11 +23,20 @@ Scene Arguments::scene() const {
             throw InputError((said_here ? "command line" : input) + ": " + error.what());
         }
     };
-    checked(gap.has_value(), [&] { validate(scene.bar); });
-    checked(cells.has_value(), [&] { validate(scene.mesh); });
+    Scene scene = read_scene(input);
+    checked(gap.has_value(), [&] {
+        Bar bar = scene.bar;
+        bar.gap = gap.value_or(bar.gap);
+        validate(bar);
+    });
+    if (cells || gap) scene = with_changes(scene, cells, gap, input);
+    if (period) scene.patterns = PeriodSelection{*period, std::nullopt};
+    if (objective) scene.objective = *objective;
+    if (all_kinds) scene.all_kinds = true;
     checked(cells || period, [&] {
         if (free_steps == 0) expect_feasible(scene);
     });
+    for (const std::string& doubt : doubts(scene)) say("{}: {}", input, doubt);
     return scene;
 }
 

@@ -13,7 +13,7 @@ namespace nsma::app {
 /// What the command line says; every command reads what its options set.
 struct Arguments {
     std::string input;  ///< scene file, folder of a sweep or file of certificates
-    std::string out;    ///< folder or file for the results
+    std::string out;    ///< folder or file for the results; of `orbit` and `plot` perhaps none
     std::optional<int> cells;
     std::optional<double> gap;                    ///< [m]
     std::optional<std::array<double, 2>> period;  ///< [lo, hi] in units of tau
@@ -28,9 +28,12 @@ struct Arguments {
     bool distinct = false;   ///< one row a motion
     bool resume = false;     ///< go on with what the folder holds
     bool quick = false;
+    bool curves = false;  ///< the curves of every orbit as well
     bool csv = false;
     bool json = false;
     bool quiet = false;
+    bool verbose = false;
+    bool fresh = false;  ///< whatever the folder holds
 
     /// The scene with what is said anew, checked. This and the next throw InputError.
     [[nodiscard]] Scene scene() const;

@@ -12,6 +12,7 @@
 #include "numerics/solver.hpp"
 #include "nsma/report/input_error.hpp"
 #include "nsma/report/scene_file.hpp"
+#include "report/did_you_mean.hpp"
 #include "report/one_line.hpp"
 
 namespace nsma::app {
@@ -168,6 +169,42 @@ void solver(CLI::App& command, Arguments& arguments) {
         ->transform(whole(1, 10'000));
 }
 
+// R,P or R,P,E: steps, and an energy as --energy has it.
+void one_orbit(CLI::App& command, Arguments& arguments) {
+    struct Named {
+        int free, contact;
+        std::optional<std::pair<double, bool>> energy;
+    };
+    const auto named = [](std::string_view word) -> std::optional<Named> {
+        const std::size_t first = word.find(',');
+        const std::size_t second = first == std::string_view::npos ? first : word.find(',', first + 1);
+        if (first == std::string_view::npos) return std::nullopt;
+        const auto free = number_in<int>(word.substr(0, first));
+        const auto contact = number_in<int>(word.substr(first + 1, second - first - 1));
+        if (!free || !contact || *free < 1 || *contact < 1) return std::nullopt;
+        if (second == std::string_view::npos) return Named{*free, *contact, std::nullopt};
+        const auto energy = energy_in(word.substr(second + 1));
+        return energy ? std::optional(Named{*free, *contact, energy}) : std::nullopt;
+    };
+    const auto set = [&arguments, named](const std::string& word) {
+        const Named orbit = named(word).value();
+        arguments.free_steps = orbit.free;
+        arguments.contact_steps = orbit.contact;
+        if (!orbit.energy) return;
+        arguments.energy = orbit.energy->first;
+        arguments.joules = orbit.energy->second;
+    };
+    command
+        .add_option_function<std::string>("--orbit", set,
+                                          "one stored orbit: free and contact steps, then an energy (E/E_g; with a J "
+                                          "behind it joules), without one its least-energy orbit")
+        ->check({[named](const std::string& word) {
+                     return named(word) ? std::string()
+                                        : "expected R,P or R,P,ENERGY such as 60,10,12.6, got " + shortened(word);
+                 },
+                 "R,P[,E]"});
+}
+
 struct Entry {
     const char* name;
     const char* summary;
@@ -186,6 +223,12 @@ std::vector<Entry> commands() {
     const Option distinct = flag("--distinct", &Arguments::distinct,
                                  "leave out of levels.csv and orbits.jsonl what a row above has under another label");
     const Option quiet = flag("--quiet", &Arguments::quiet, "no progress on stderr");
+    const Option resume = [](CLI::App& command, Arguments& arguments) {
+        auto* const old = command.add_flag("--resume", arguments.resume, "go on with what the folder holds");
+        command
+            .add_flag("--fresh", arguments.fresh, "begin anew, also where an interrupted sweep could be gone on with")
+            ->excludes(old);
+    };
     return {
         {"scan",
          "list the patterns (r, p) with a nontrivial kernel, their verdicts and energy intervals",
@@ -198,23 +241,27 @@ std::vector<Entry> commands() {
         {"orbit",
          "one orbit of one pattern",
          {scene, bar_and_mesh, pattern(true), energy, objective, solver,
-          flag("--json", &Arguments::json, "one JSON object on stdout instead of text")},
+          flag("--json", &Arguments::json, "one JSON object on stdout instead of text"),
+          [](CLI::App& command, Arguments& arguments) {
+              command.add_option("--out", arguments.out, "folder for the orbit's charts, curves.csv and orbit.json");
+          },
+          flag("--verbose", &Arguments::verbose, "also what presolve took from the conditions")},
          "Examples:\n"
          "  nsma orbit problems/first-mode.toml --free 48 --contact 16\n"
          "  nsma orbit problems/first-mode.toml --cells 6 --free 16 --contact 4 --energy 12 --json",
          run_orbit},
         {"sweep",
          "every pattern of the scene at every energy level: table, orbits, charts",
-         {scene, out_folder, solver, all_kinds, distinct,
-          flag("--resume", &Arguments::resume, "go on with what the folder holds; without it all is done anew"), quiet},
+         {scene, bar_and_mesh, out_folder, solver, all_kinds, distinct, resume, quiet},
          "Examples:\n"
          "  nsma sweep problems/first-mode.toml --out out/first-mode\n"
          "  nsma sweep problems/first-mode.toml --out out/first-mode --resume",
          run_sweep},
         {"export",
          "write the tables and the summary of a stored sweep again",
-         {sweep_folder, distinct},
-         "Example:\n  nsma export out/first-mode",
+         {sweep_folder, distinct,
+          flag("--curves", &Arguments::curves, "also curves.csv: motion and force of every orbit, row by row")},
+         "Example:\n  nsma export out/first-mode --curves",
          run_export},
         {"accuracy",
          "speed against accuracy: every method on the same work, and where each fails",
@@ -231,8 +278,10 @@ std::vector<Entry> commands() {
          run_sensitivity},
         {"plot",
          "draw the charts of a stored sweep again",
-         {sweep_folder, flag("--quiet", &Arguments::quiet, "print no list of charts")},
-         "Example:\n  nsma plot out/first-mode",
+         {sweep_folder, one_orbit, flag("--quiet", &Arguments::quiet, "print no list of charts")},
+         "Examples:\n"
+         "  nsma plot out/first-mode\n"
+         "  nsma plot out/first-mode --orbit 60,10,12.6",
          run_plot},
         {"prove",
          "write exact certificates of the verdicts and energy intervals, one a line",
@@ -248,6 +297,15 @@ std::vector<Entry> commands() {
          "Example:\n  nsma check proofs.jsonl",
          run_check},
     };
+}
+
+// All that a command needs and was not given.
+std::string missing_of(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->get_required() && option->count() == 0) names.push_back(option->get_name());
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 constexpr const char* examples_and_exit_codes =
@@ -289,8 +347,9 @@ std::optional<Command> read_command_line(int count, const char* const* words) {
     const std::string_view word = count > 1 ? words[1] : "none";
     const bool asks = word == "--help" || word == "-h" || word == "--version";
     if (!asks && std::find(names.begin(), names.end(), word) == names.end()) {
-        throw InputError(one_line(fmt::format("command line: expected one of {}, got {} (see nsma --help)",
-                                              fmt::join(names, ", "), shortened(std::string(word)))));
+        throw InputError(
+            one_line(fmt::format("command line: expected one of {}, got {}{} (see nsma --help)", fmt::join(names, ", "),
+                                 shortened(std::string(word)), did_you_mean(word, names))));
     }
     try {
         app.parse(count, words);
@@ -303,9 +362,13 @@ std::optional<Command> read_command_line(int count, const char* const* words) {
     } catch (const CLI::CallForVersion&) {
         fmt::print("{}\n", version());
     } catch (const CLI::ParseError& error) {
+        const auto named = app.get_subcommands();
         std::string message = one_line(error.what());
         while (message.ends_with(' ')) message.pop_back();
-        throw InputError("command line: " + message + " (see nsma --help)");
+        if (const std::string missing = named.empty() ? "" : missing_of(*named.front()); !missing.empty())
+            message = "expected " + missing + " as well";
+        throw InputError(fmt::format("command line: {} (see nsma {}--help)", message,
+                                     named.empty() ? "" : named.front()->get_name() + " "));
     }
     return std::nullopt;
 }

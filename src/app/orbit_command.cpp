@@ -1,10 +1,17 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "standard_streams.hpp"
 
+#include "nsma/orbit/physical_values.hpp"
 #include "nsma/search/pattern_problem.hpp"
 #include "nsma/report/orbit_json.hpp"
+#include "report/bar_text.hpp"
+#include "report/folder_lock.hpp"
 #include "report/record_values.hpp"
+#include "report/results_folder.hpp"
+#include "report/sweep/sweep_charts.hpp"
+#include "report/sweep/tables.hpp"
 
 namespace nsma::app {
 namespace {
@@ -36,9 +43,24 @@ void print_presolve(const Reduction& reduction) {
         removed.duplicate_rows, removed.dominated_rows);
 }
 
-void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar& bar) {
+// What an experiment would measure.
+void print_measurable(const Orbit& orbit) {
+    const PhysicalValues values = physical_values(orbit);
+    const Bar& bar = orbit.bar;
+    fmt::print("frequency     {} (T = {})\n", si_text(values.frequency, "Hz"), si_text(1.0 / values.frequency, "s"));
+    fmt::print("energy        {}", si_text(energy(orbit), "J"));
+    if (bar.gap != 0) fmt::print(" = {:.10g} E_g", energy_ratio(orbit));
+    if (bar.gap < 0)
+        fmt::print("; at rest against the wall E_g, so {} above rest", si_text(energy(orbit) - bar.energy_unit(), "J"));
+    fmt::print("\npeak force    {}\nimpact speed  {}\npeak stress   {} at the fixed end\ntip           {} to {}\n",
+               si_text(values.peak_force, "N"), si_text(values.impact_speed, "m/s"), si_text(values.peak_stress, "Pa"),
+               si_text(values.tip_least, "m"), si_text(bar.gap, "m"));
+}
+
+void print_text(const OrbitAnswer& answer, const Reduction& reduction, bool verbose) {
     const bool closed = answer.gap_sign == 0;
     const Pattern& pattern = answer.pattern;
+    if (answer.orbit) print_measurable(*answer.orbit);
     if (answer.kind) fmt::print("kind          {}: {}\n", name(*answer.kind), meaning(*answer.kind));
     fmt::print("pattern       r = {}, p = {}, N = {}: m = {}, T/tau = {:.6g}, omega/omega_1 = {:.6g}\n",
                pattern.free_steps, pattern.contact_steps, pattern.cells, answer.kernel_dimension,
@@ -55,9 +77,8 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
         fmt::print("energies      {}{} to {}{}\n", energy_text(*answer.interval.least, closed),
                    exactly(answer.interval.least_exact), greatest, exactly(answer.interval.greatest_exact));
     }
-    if (answer.kernel_dimension > 0) print_presolve(reduction);
+    if (verbose && answer.kernel_dimension > 0) print_presolve(reduction);
     if (!answer.orbit) return;
-    fmt::print("energy        {} = {:.10g} J\n", energy_text(*answer.energy, closed), energy(*answer.orbit));
     fmt::print("objective     {} = {:.10g} (by {})\n", name(answer.objective), *answer.objective_value, answer.method);
     const auto& violations = answer.replay->violations;
     fmt::print("replay        periodicity {:.1e}, COND1 {:.1e}, COND2 {:.1e}, COND3 {:.1e}, energy {:.1e} (relative)\n",
@@ -70,7 +91,6 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
         fmt::print("also          r = {}, p = {}, {} steps later{}\n", label->free_steps, label->contact_steps,
                    label->shift_steps, label->reversed ? ", backward in time" : "");
     }
-    fmt::print("peak force    {:.6g} N\n", contact_force(*answer.orbit).cwiseAbs().maxCoeff());
     if (const auto& optimality = answer.optimality; optimality && optimality->lower_bound) {
         fmt::print("bound         {:.10g}, {}\n", *optimality->lower_bound,
                    optimality->global ? "the best orbit at this level" : fmt::format("gap {:.1e}", optimality->gap));
@@ -91,7 +111,20 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, const Bar
     fmt::print("alpha [m/s]  ");
     const Eigen::VectorXd alpha = amplitudes(*answer.orbit);
     for (const double value : alpha) fmt::print(" {:.6g}", value + 0.0);
-    fmt::print("\ngap           {:g} m\n", bar.gap);
+    fmt::print("\n");
+}
+
+// Charts, curves and JSON of an orbit in a folder of their own.
+void write_orbit(const std::filesystem::path& folder, const Scene& scene, const OrbitAnswer& answer, bool list) {
+    const FolderLock lock(folder);
+    prepare_results_folder(folder, scene, {});
+    write_whole(folder / "orbit.json", orbit_json(answer, scene.bar) + "\n");
+    write_whole(folder / "curves.csv", curves_csv_header() + "\n" + curves_csv_rows(*answer.orbit, answer.level));
+    const StoredOrbit orbit{answer.level, *answer.energy, *answer.orbit};
+    draw_if_possible([&] {
+        for (const auto& picture : draw_charts(charts_of(scene, orbit, "orbit"), folder / "charts"))
+            if (list) fmt::print("chart    {}\n", picture.string());
+    });
 }
 
 // The exit code of an answer.
@@ -123,8 +156,10 @@ int run_orbit(const Arguments& arguments) {
     if (arguments.json) {
         fmt::print("{}\n", orbit_json(answer, scene.bar));
     } else {
-        print_text(answer, problem.set.reduction, scene.bar);
+        fmt::print("{}\n", derived_text(scene));
+        print_text(answer, problem.set.reduction, arguments.verbose);
     }
+    if (answer.orbit && !arguments.out.empty()) write_orbit(arguments.out, scene, answer, !arguments.json);
     return exit_code(answer);
 }
 

@@ -10,6 +10,7 @@
 #include "standard_streams.hpp"
 
 #include "nsma/numerics/interruption.hpp"
+#include "report/bar_text.hpp"
 #include "report/sweep/tables.hpp"
 
 namespace nsma::app {
@@ -18,7 +19,8 @@ int run_scan(const Arguments& arguments) {
     const Scene scene = arguments.scene();
     const auto total = static_cast<long>(arguments.patterns(scene).size());
     long done = 0;
-    long shown = 0;
+    long nontrivial = 0;
+    const bool listed = std::holds_alternative<ListSelection>(scene.patterns);  // then every one is asked for
     bool failed = false;
     KindCounts admissible;
     Sieve sieve(scene.mesh.cells, scene.bar.gap_sign());
@@ -33,10 +35,11 @@ int run_scan(const Arguments& arguments) {
             failed = true;
             say("({}, {}): {}", pattern.free_steps, pattern.contact_steps, record.reason);
         }
-        if (record.kernel_dimension == 0) return;
-        ++shown;
+        if (record.kernel_dimension > 0) ++nontrivial;
+        if (record.kernel_dimension == 0 && !listed) return;
         fmt::print("{}\n", arguments.csv ? scan_csv_row(scene.bar, record) : scan_table_row(record));
     };
+    if (!arguments.csv) fmt::print("{}\n", derived_text(scene));
     fmt::print("{}\n", arguments.csv ? scan_csv_header() : scan_table_header(scene.bar));
     try {
         scan(
@@ -45,8 +48,8 @@ int run_scan(const Arguments& arguments) {
     }
     progress.clear();
     if (!arguments.csv) {
-        fmt::print("{} patterns, {} with a nontrivial kernel, {} admissible: {}\n", done, shown, admissible.total(),
-                   admissible.text());
+        fmt::print("{} patterns, {} with a nontrivial kernel, {} admissible: {}\n", done, nontrivial,
+                   admissible.total(), admissible.text());
         fmt::print(
             "decided in integers: {} trivial kernels, {} with every live class bounded from both sides, "
             "{} by COND2's row, {} by a COND1 row\n",

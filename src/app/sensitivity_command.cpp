@@ -27,8 +27,10 @@ int run_sensitivity(const Arguments& arguments) {
     write_sensitivity(arguments.out, scene, records);
     fmt::print("{}results are in {}\n", sensitivity_text("sensitivity.txt", scene, records), arguments.out);
     if (!summary.interrupted) {
-        for (const auto& picture : draw_sensitivity(arguments.out, scene, records))
-            fmt::print("chart    {}\n", picture.string());
+        draw_if_possible([&] {
+            for (const auto& picture : draw_sensitivity(arguments.out, scene, records))
+                fmt::print("chart    {}\n", picture.string());
+        });
     }
     if (summary.left > 0 && summary.left == summary.admissible) {
         say("no pattern of the scene is a contact motion; --all-kinds studies the other {}", summary.left);

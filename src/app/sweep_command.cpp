@@ -13,6 +13,7 @@
 #include "nsma/numerics/interruption.hpp"
 #include "study/sweep/sweep_queue.hpp"
 #include "study/sweep/work_messages.hpp"
+#include "report/bar_text.hpp"
 #include "report/folder_lock.hpp"
 #include "report/sweep/sweep_charts.hpp"
 #include "report/sweep/sweep_export.hpp"
@@ -22,13 +23,14 @@
 namespace nsma::app {
 namespace {
 
-void draw(const std::string& folder, bool list = true) {
-    const DrawnCharts charts = draw_sweep(folder);
+void list(const DrawnCharts& charts, bool pictures) {
     for (const auto& picture : charts.pictures) {
-        if (list) fmt::print("chart    {}\n", picture.string());
+        if (pictures) fmt::print("chart    {}\n", picture.string());
     }
     for (const auto& line : charts.skipped) say("{}", line);
 }
+
+void draw(const std::string& folder, bool pictures = true) { list(draw_sweep(folder), pictures); }
 
 // What decides an answer besides scene and software.
 std::string options_text(const OrbitSolverOptions& options, bool all_kinds) {
@@ -127,6 +129,13 @@ void solve(const Arguments& arguments, Crew& crew, const Scene& scene, SweepStor
     if (queue.finished()) store.finish();  // also what a kill left complete but not yet under its name
 }
 
+// An interval of energies in both units.
+std::string energies_text(const std::array<double, 2>& span, const Bar& bar) {
+    const double unit = bar.energy_unit();
+    const std::string joules = si_text(span[0] * unit, "J") + " to " + si_text(span[1] * unit, "J");
+    return bar.gap == 0 ? joules : fmt::format("{:.6g} to {:.6g} E_g ({})", span[0], span[1], joules);
+}
+
 }  // namespace
 
 int run_sweep(const Arguments& arguments) {
@@ -134,13 +143,21 @@ int run_sweep(const Arguments& arguments) {
     if (crew.helper()) return help(crew, arguments);
     const Scene scene = arguments.scene();
     const FolderLock lock(arguments.out);
+    const std::filesystem::path part = std::filesystem::path(arguments.out) / "results.sqlite.part";
+    if (std::error_code code; !arguments.resume && !arguments.fresh && std::filesystem::exists(part, code)) {
+        throw InputError(
+            part.string() +
+            ": is an interrupted sweep: expected --resume to go on with it or --fresh to begin anew, got none");
+    }
     SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver, scene.all_kinds)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
     solve(arguments, crew, scene, store);
-    const auto [summary, line] = export_sweep(store, arguments.out, arguments.distinct);
-    fmt::print("{}{}\n", summary_table(summary), line);
+    const auto [summary, line, span] = export_sweep(store, arguments.out, arguments.distinct);
+    fmt::print("{}\n{}{}\n", derived_text(scene), summary_table(summary), line);
+    if (span && summary.levels > 0 && summary.solved == 0)
+        fmt::print("no level was solved: the orbits of these patterns have {}\n", energies_text(*span, scene.bar));
     if (summary.interrupted) return exit_interrupted;
-    draw(arguments.out);
+    draw_if_possible([&] { draw(arguments.out); });
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
     if (summary.left > 0 && summary.left == summary.admissible) {
         std::fflush(stdout);
@@ -155,13 +172,20 @@ int run_export(const Arguments& arguments) {
     const FolderLock lock(arguments.input);
     const SweepStore store(arguments.input);
     fmt::print("{}\n", export_sweep(store, arguments.input, arguments.distinct).line);
+    if (arguments.curves) export_curves(store, arguments.input);
     return exit_done;
 }
 
 int run_plot(const Arguments& arguments) {
     expect_sweep_folder(arguments.input);
     const FolderLock lock(arguments.input);
-    draw(arguments.input, !arguments.quiet);
+    if (arguments.free_steps > 0) {
+        const Scene scene = SweepStore(arguments.input).scene();
+        list(draw_orbit(arguments.input, arguments.free_steps, arguments.contact_steps, arguments.level(scene)),
+             !arguments.quiet);
+    } else {
+        draw(arguments.input, !arguments.quiet);
+    }
     return exit_done;
 }
 

@@ -40,7 +40,7 @@ std::pair<bool, std::string> run_gnuplot(const std::string& script, const fs::pa
     const int status = pclose(output);
     constexpr int no_such_program = 127;
     if (WIFEXITED(status) && WEXITSTATUS(status) == no_such_program) {
-        throw InputError("gnuplot: cannot be started: No such file or directory; install gnuplot-nox to draw charts");
+        throw NoGnuplot("gnuplot: cannot be started: No such file or directory; install gnuplot-nox to draw charts");
     }
     return {WIFEXITED(status) && WEXITSTATUS(status) == 0, said};
 }

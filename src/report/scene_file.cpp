@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "did_you_mean.hpp"
 #include "input_file.hpp"
 #include "nesting.hpp"
 #include "one_line.hpp"
@@ -63,7 +65,8 @@ public:
     void refuse_all_but(const Keys& known) const {
         for (const auto& [key, node] : *node_->as_table()) {
             if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
-            (*this)[key.str()].fail(fmt::format("one of {}", fmt::join(known, ", ")), "an unknown key");
+            (*this)[key.str()].fail(fmt::format("one of {}", fmt::join(known, ", ")),
+                                    "an unknown key" + did_you_mean(key.str(), known));
         }
     }
 
@@ -267,6 +270,28 @@ Objective read_objective(const SceneValue& value) {
 
 }  // namespace
 
+namespace {
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+    std::vector<std::string_view> lines;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        lines.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return lines;
+}
+
+// Where a line of TOML that cannot be read seems to hold a text without its quotation marks.
+std::string_view quotes_hint(std::string_view line) {
+    const std::size_t equals = line.find('=');
+    const std::size_t value = equals == std::string_view::npos ? equals : line.find_first_not_of(" \t[", equals + 1);
+    const bool word = value != std::string_view::npos && std::isalpha(static_cast<unsigned char>(line[value])) != 0;
+    return word ? "; a text stands in \"quotation marks\"" : "";
+}
+
+}  // namespace
+
 Scene parse_scene(std::string_view text, const std::string& where) {
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
         throw InputError(one_line(fmt::format("{}: expected a scene, got an empty file", where)));
@@ -276,19 +301,15 @@ Scene parse_scene(std::string_view text, const std::string& where) {
         throw InputError(
             one_line(fmt::format("{}:{}: expected brackets and keys at most {} deep, got more", where, line, deepest)));
     }
+    const SceneText source{where, lines_of(text)};
     toml::table table;
     try {
         table = toml::parse(text, std::string_view(where));
     } catch (const toml::parse_error& error) {
-        throw InputError(
-            one_line(fmt::format("{}:{}: expected TOML, got a syntax error: {}", where, error.source().begin.line,
-                                 shortened(std::string(error.description()), 200))));
-    }
-    SceneText source{where, {}};
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        source.lines.push_back(text.substr(at, end - at));
-        at = end + 1;
+        const auto number = error.source().begin.line;
+        const std::string_view line = number >= 1 && number <= source.lines.size() ? source.lines[number - 1] : "";
+        throw InputError(one_line(fmt::format("{}:{}: expected TOML, got a syntax error: {}{}", where, number,
+                                              shortened(std::string(error.description()), 200), quotes_hint(line))));
     }
     const SceneValue root(source, "", table);
     root.refuse_all_but({"title", "bar", "mesh", "patterns", "levels", "program"});
@@ -304,6 +325,27 @@ Scene parse_scene(std::string_view text, const std::string& where) {
     scene.objective = read_objective(root.section("program", {"objective"})["objective"]);
     scene.text = text;
     return scene;
+}
+
+Scene with_changes(const Scene& scene, std::optional<int> cells, std::optional<double> gap, const std::string& where) {
+    const toml::table table = toml::parse(scene.text);
+    // From the last to the first, so that places stay where they are.
+    struct Change {
+        toml::source_region place;
+        std::string value;
+    };
+    std::vector<Change> changes;
+    if (cells) changes.push_back({table["mesh"]["cells"].node()->source(), fmt::format("{}", *cells)});
+    if (gap) changes.push_back({table["bar"]["gap"].node()->source(), fmt::format("{}", *gap)});
+    std::sort(changes.begin(), changes.end(),
+              [](const Change& a, const Change& b) { return a.place.begin > b.place.begin; });
+    std::string text = scene.text;
+    for (const auto& [place, value] : changes) {
+        std::size_t line = 0;
+        for (auto number = place.begin.line; number > 1; --number) line = text.find('\n', line) + 1;
+        text.replace(line + place.begin.column - 1, place.end.column - place.begin.column, value);
+    }
+    return parse_scene(text, where);
 }
 
 Scene read_scene(const std::filesystem::path& file) {

@@ -240,4 +240,59 @@ TEST_F(Surroundings, AForgedCertificateKeepsNobodyBusy) {
     }
 }
 
+TEST_F(Surroundings, AnOrbitIsDrawnWhereItIsAskedFor) {
+    const auto has = [&](const std::string& name) { return fs::exists(path(name)) && fs::file_size(path(name)) > 100; };
+    const Result one = run({"orbit", scene_, "--free", "16", "--contact", "4", "--energy", "6J", "--out", path("one")});
+    EXPECT_EQ(one.exit_code, 0) << one.err;
+    EXPECT_NE(one.out.find("energy        6 J = 12 E_g"), std::string::npos) << one.out;  // E_g = 1/2 J
+    for (const char* name :
+         {"one/orbit.json", "one/curves.csv", "one/charts/orbit-motion.svg", "one/charts/orbit-stress.png"})
+        EXPECT_TRUE(has(name)) << name;
+    EXPECT_EQ(process::lines_of(contents(path("one/curves.csv"))).size(), 1U + 21U);  // n = 0..n_T
+    ASSERT_EQ(run({"sweep", scene_, "--out", path("sweep"), "--quiet", "--cells", "6", "--gap", "1"}).exit_code, 0);
+    EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "16,4,11"}).exit_code, 0);
+    EXPECT_TRUE(has("sweep/charts/orbit-16-4-12-motion.png"));  // the level that is nearest
+    EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "16,4"}).exit_code, 0);
+    EXPECT_TRUE(has("sweep/charts/orbit-16-4-stress.svg"));
+    EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "17,4"}).exit_code, 2);
+    for (const std::string word : {"16", "16,", "16,4,", "16,4,x", "-1,4", "16,4,12,3"})
+        expect_refused({"plot", path("sweep"), "--orbit", word}, "--orbit: expected R,P");
+    EXPECT_EQ(run({"export", path("sweep"), "--curves"}).exit_code, 0);
+    EXPECT_TRUE(has("sweep/curves.csv"));
+}
+
+TEST_F(Surroundings, WithoutGnuplotTheTablesAreComplete) {
+    fs::create_directory(path("empty"));
+    const Result result =
+        shell("PATH=" + path("empty") + ":/bin exec \"$0\" \"$@\"", {"sweep", scene_, "--out", path("out"), "--quiet"});
+    if (fs::exists("/bin/gnuplot")) GTEST_SKIP() << "gnuplot is beside the shell";
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.err.find("install gnuplot-nox"), std::string::npos) << result.err;
+    EXPECT_TRUE(fs::exists(path("out/levels.csv")));
+}
+
+TEST_F(Surroundings, AnInterruptedSweepIsNotBegunAnewByMistake) {
+    ASSERT_EQ(run({"sweep", scene_, "--out", path("out"), "--quiet"}).exit_code, 0);
+    fs::rename(path("out/results.sqlite"), path("out/results.sqlite.part"));
+    const Result refused = run({"sweep", scene_, "--out", path("out"), "--quiet"});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find("expected --resume to go on with it or --fresh to begin anew"), std::string::npos);
+    expect_refused({"sweep", scene_, "--out", path("out"), "--fresh", "--resume"}, "excludes");
+    EXPECT_EQ(run({"sweep", scene_, "--out", path("out"), "--quiet", "--fresh"}).exit_code, 0);
+    EXPECT_TRUE(fs::exists(path("out/results.sqlite")));
+}
+
+TEST_F(Surroundings, AListedPatternKeepsItsRow) {
+    const std::string scene =
+        write("listed.toml", scene_text("1.0", "6", "list = [[16, 4], [15, 4]]"));  // g = 1, q odd
+    const Result result = run({"scan", scene, "--csv"});
+    EXPECT_NE(result.out.find("6,1,15,4,19,0,"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(",trivial,"), std::string::npos) << result.out;
+}
+
+TEST_F(Surroundings, WhatIsMissingIsNamedAtOnce) {
+    expect_refused({"orbit", scene_}, "expected --free, --contact as well (see nsma orbit --help)");
+    expect_refused({"swep"}, "did you mean sweep?");
+}
+
 }  // namespace

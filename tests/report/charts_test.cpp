@@ -76,7 +76,7 @@ TEST_F(ChartsTest, SpaceTimePictureAgreesWithTheField) {
     const StoredSweep sweep = read_sweep_folder(path);
     const StoredOrbit& stored = *choose_orbits(sweep).orbits[1];
     const Eigen::MatrixXd stress = field(stored.orbit).stress;
-    std::istringstream lines(space_time_chart(sweep, stored).data);
+    std::istringstream lines(space_time_chart(sweep.scene, stored).data);
     std::string line;
     std::getline(lines, line);
     std::vector<std::vector<double>> rows;

@@ -10,4 +10,10 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// There is no gnuplot: charts cannot be drawn, all else can be done.
+class NoGnuplot : public InputError {
+public:
+    using InputError::InputError;
+};
+
 }  // namespace nsma

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,10 @@ inline constexpr double greatest_level = 1e30;
 /// otherwise; unknown, missing, mistyped or out-of-range keys throw InputError naming file,
 /// line and key.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file);
+
+/// The scene with another number of cells or another gap, in its text as well.
+[[nodiscard]] Scene with_changes(const Scene& scene, std::optional<int> cells, std::optional<double> gap,
+                                 const std::string& where);
 
 /// The same from text; `where` stands for the file in messages.
 [[nodiscard]] Scene parse_scene(std::string_view text, const std::string& where);

@@ -95,8 +95,8 @@ Eigen::MatrixXd stress_picture(const Orbit& orbit) {
 
 }  // namespace
 
-Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
-    const Bar& bar = sweep.scene.bar;
+Chart orbit_chart(const Scene& scene, const OrbitChoice& choice, const std::string& name) {
+    const Bar& bar = scene.bar;
     const Extent extent = extent_of(choice, bar);
     const bool closed = bar.gap_sign() == 0;
     const ScaledUnit force = scaled_unit(extent.force, "N");
@@ -106,7 +106,7 @@ Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
     const double largest_force = std::max(extent.force * force.factor, 1e-9);
     const std::string times = range(0.0, 1.01 * extent.period);
     Panel tips{.frame = Frame{0.12, 0.97, 0.52, 0.92},
-               .title = fmt::format("{}: {}", sweep.scene.title, choice.what),
+               .title = fmt::format("{}: {}", scene.title, choice.what),
                .x = {"", times, "format ''"},
                .y = {closed ? fmt::format("tip displacement x ({})", length.unit) : "tip displacement x/|d|",
                      range(extent.lowest * length.factor - head, at_wall + head)},
@@ -120,10 +120,10 @@ Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
               fmt::format("{}", 1.0 / round_below(4.5 / largest_force))},
         .key = "at screen 0.535, screen 0.14 center top vertical maxrows 3 samplen 5",
         .curves = {{"0", "lines lw 1 lc rgb '#999999'"}}};
-    Chart chart{.name = "orbits",
+    Chart chart{.name = name,
                 .data = fmt::format("# {}: time t/tau, then tip displacement [{}] or contact force [{}]; "
                                     "third column: where a marker stands\n",
-                                    sweep.scene.title, length.unit, force.unit),
+                                    scene.title, length.unit, force.unit),
                 .settings = "set ylabel offset 0.5,0\n"};
     for (std::size_t i = 0; i < choice.orbits.size(); ++i) {
         const Orbit& orbit = choice.orbits[i]->orbit;
@@ -142,16 +142,16 @@ Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
     return chart;
 }
 
-Chart space_time_chart(const StoredSweep& sweep, const StoredOrbit& stored) {
+Chart space_time_chart(const Scene& scene, const StoredOrbit& stored, const std::string& name) {
     const Pattern& pattern = pattern_of(stored);
     const double period = pattern.period_ratio();
     const double touch = static_cast<double>(pattern.free_steps) / pattern.cells;
     const Eigen::MatrixXd stress = stress_picture(stored.orbit);
     const double largest = stress.cwiseAbs().maxCoeff();
     const ScaledUnit unit = scaled_unit(largest, "Pa");
-    Chart chart{.name = "space-time",
+    Chart chart{.name = name,
                 .data = fmt::format("# {}: stress [{}]; {} rows over one period, {} columns over the bar\n",
-                                    sweep.scene.title, unit.unit, stress.rows(), stress.cols())};
+                                    scene.title, unit.unit, stress.rows(), stress.cols())};
     for (int row = 0; row < stress.rows(); ++row) {
         for (int column = 0; column < stress.cols(); ++column) {
             chart.data += fmt::format("{}{:.5g}", column == 0 ? "" : " ", stress(row, column) * unit.factor + 0.0);
@@ -176,10 +176,15 @@ set arrow from graph 1.012, first {} to graph 1.012, first {} nohead lw 6 lc rgb
          .settings = fmt::format("set label 'contact' at graph 1.03, first {} left\n"
                                  "set label 'free' at graph 1.03, first {} left textcolor rgb '#555555'\n",
                                  (touch + period) / 2.0, touch / 2.0),
-         .curves = {{fmt::format("'space-time.dat' matrix using (($1 + 0.5)*{}):(($2 + 0.5)*{}):3",
+         .curves = {{fmt::format("'{}.dat' matrix using (($1 + 0.5)*{}):(($2 + 0.5)*{}):3", name,
                                  1.0 / static_cast<double>(stress.cols()), period / static_cast<double>(stress.rows())),
                      "image"}}}};
     return chart;
+}
+
+std::vector<Chart> charts_of(const Scene& scene, const StoredOrbit& stored, const std::string& name) {
+    const OrbitChoice choice{{&stored}, stored.level ? "one orbit" : "the orbit of least energy"};
+    return {orbit_chart(scene, choice, name + "-motion"), space_time_chart(scene, stored, name + "-stress")};
 }
 
 }  // namespace nsma

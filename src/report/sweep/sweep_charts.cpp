@@ -4,7 +4,10 @@
 #include <cmath>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "nsma/orbit/backbone.hpp"
+#include "report/results_folder.hpp"
 
 namespace nsma {
 namespace {
@@ -68,11 +71,31 @@ DrawnCharts draw_sweep(const std::filesystem::path& sweep_folder) {
     if (choice.orbits.empty()) {
         drawn.skipped = {"orbits: no orbit is stored", "space-time: no orbit is stored"};
     } else {
-        charts.push_back(orbit_chart(sweep, choice));
-        charts.push_back(space_time_chart(sweep, *choice.orbits[choice.orbits.size() / 2]));
+        charts.push_back(orbit_chart(sweep.scene, choice));
+        charts.push_back(space_time_chart(sweep.scene, *choice.orbits[choice.orbits.size() / 2]));
     }
     drawn.pictures = draw_charts(charts, sweep_folder / "charts");
     return drawn;
+}
+
+DrawnCharts draw_orbit(const std::filesystem::path& sweep_folder, int free_steps, int contact_steps,
+                       std::optional<double> level) {
+    const StoredSweep sweep = read_sweep_folder(sweep_folder);
+    const StoredOrbit* found = nullptr;
+    const auto distance = [&](const StoredOrbit& orbit) { return std::abs(std::log(*orbit.level / *level)); };
+    for (const StoredOrbit& orbit : sweep.orbits) {
+        const Pattern& pattern = orbit.orbit.kernel.pattern;
+        if (pattern.free_steps != free_steps || pattern.contact_steps != contact_steps) continue;
+        if (orbit.level.has_value() != level.has_value()) continue;
+        if (found == nullptr || (level && distance(orbit) < distance(*found))) found = &orbit;
+    }
+    if (found == nullptr) {
+        fail(sweep_folder, fmt::format("expected an orbit with r = {}, p = {}{}, got none in this sweep", free_steps,
+                                       contact_steps, level ? " at a level" : ""));
+    }
+    const std::string energy = found->level ? fmt::format("-{:.6g}", *found->level) : std::string();
+    const std::string name = fmt::format("orbit-{}-{}{}", free_steps, contact_steps, energy);
+    return {draw_charts(charts_of(sweep.scene, *found, name), sweep_folder / "charts"), {}};
 }
 
 }  // namespace nsma

@@ -22,11 +22,16 @@ struct OrbitChoice {
 [[nodiscard]] OrbitChoice choose_orbits(const StoredSweep& sweep);
 
 /// Tip displacement over one period with the wall drawn; contact force on the same time axis.
-[[nodiscard]] Chart orbit_chart(const StoredSweep& sweep, const OrbitChoice& choice);
+/// `name` is that of its files.
+[[nodiscard]] Chart orbit_chart(const Scene& scene, const OrbitChoice& choice, const std::string& name = "orbits");
 
 /// Stress over bar and time for one period, with the contact phase marked at the wall. The waves
 /// are drawn where they are exactly, at several samples a cell.
-[[nodiscard]] Chart space_time_chart(const StoredSweep& sweep, const StoredOrbit& stored);
+[[nodiscard]] Chart space_time_chart(const Scene& scene, const StoredOrbit& stored,
+                                     const std::string& name = "space-time");
+
+/// Motion and stress of one orbit, files NAME-motion and NAME-stress.
+[[nodiscard]] std::vector<Chart> charts_of(const Scene& scene, const StoredOrbit& stored, const std::string& name);
 
 /// Draws every chart of a stored sweep into folder/charts.
 struct DrawnCharts {
@@ -34,5 +39,10 @@ struct DrawnCharts {
     std::vector<std::string> skipped;             ///< one line a chart that had nothing to show
 };
 [[nodiscard]] DrawnCharts draw_sweep(const std::filesystem::path& sweep_folder);
+
+/// Draws one stored orbit, its least-energy orbit without a level (energy units), else the one at the nearest level.
+/// Throws InputError where the sweep has none of this pattern.
+[[nodiscard]] DrawnCharts draw_orbit(const std::filesystem::path& sweep_folder, int free_steps, int contact_steps,
+                                     std::optional<double> level);
 
 }  // namespace nsma

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "sweep_folder.hpp"
+#include "tables.hpp"
 
 namespace nsma {
 
@@ -35,12 +36,18 @@ private:
 
 Exported export_sweep(const SweepStore& store, const fs::path& folder, bool distinct) {
     SweepSummary summary;
+    std::optional<std::array<double, 2>> span;
     std::optional<SweepFolder> files;
     SeenMotions seen;
     if (!store.beside_complete()) files.emplace(folder, store.scene());
     store.for_each([&](const WorkResult& result) {
         if (result.record) {
             count(summary, *result.record, store.scene().all_kinds);
+            const EnergyInterval& interval = result.record->interval;
+            if (is_solved(store.scene().all_kinds, result.record->kind) && interval.least && interval.greatest) {
+                if (!span) span = {*interval.least, *interval.greatest};
+                span = {std::min((*span)[0], *interval.least), std::max((*span)[1], *interval.greatest)};
+            }
             if (files) files->pattern(*result.record);
         }
         if (result.answer) {
@@ -53,14 +60,26 @@ Exported export_sweep(const SweepStore& store, const fs::path& folder, bool dist
     summary.seconds = store.seconds();
     summary.interrupted = !store.complete();
     if (!files) {
-        return {summary, fmt::format("interrupted: {} keeps its complete results; what was done now is in {}, and "
-                                     "--resume goes on with it",
-                                     folder.string(), store.file_name())};
+        return {summary,
+                fmt::format("interrupted: {} keeps its complete results; what was done now is in {}, and "
+                            "--resume goes on with it",
+                            folder.string(), store.file_name()),
+                span};
     }
     files->finish(summary);
     const char* const line = summary.interrupted ? "interrupted: partial results are in {}; --resume goes on with them"
                                                  : "results are in {}";
-    return {summary, fmt::format(fmt::runtime(line), folder.string())};
+    return {summary, fmt::format(fmt::runtime(line), folder.string()), span};
+}
+
+void export_curves(const SweepStore& store, const fs::path& folder) {
+    PartFile file(folder / "curves.csv");
+    file.write(curves_csv_header() + "\n");
+    store.for_each([&](const WorkResult& result) {
+        if (result.answer && result.answer->orbit)
+            file.write(curves_csv_rows(*result.answer->orbit, result.answer->level));
+    });
+    file.put_in_place();
 }
 
 StoredSweep read_sweep_folder(const fs::path& folder) {

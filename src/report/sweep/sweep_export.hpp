@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,12 +13,18 @@ namespace nsma {
 /// Writes patterns.csv, levels.csv, orbits.jsonl, timings.csv and the summary of a store into
 /// its folder, each complete or not at all; a part file never replaces complete results. `distinct` leaves answers out
 /// whose motion one before at the same level has under another label. `line` tells the user where they are.
+/// `span`: the least and the greatest energy of all patterns that are solved, in energy units; a bar without a gap and
+/// patterns without such orbits have none.
 struct Exported {
     SweepSummary summary;
     std::string line;
+    std::optional<std::array<double, 2>> span = {};
 };
 [[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder,
                                     bool distinct = false);
+
+/// Writes curves.csv, the curves of every stored orbit in the scene's order.
+void export_curves(const SweepStore& store, const std::filesystem::path& folder);
 
 /// A stored answer, as far as charts need it.
 struct StoredLevel {

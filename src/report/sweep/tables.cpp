@@ -104,6 +104,22 @@ std::vector<std::string> timings_csv_rows(const OrbitAnswer& answer) {
     return rows;
 }
 
+std::string curves_csv_header() { return "free_steps,contact_steps,level,t_s,x_m,force_n"; }
+
+std::string curves_csv_rows(const Orbit& orbit, std::optional<double> level) {
+    const Pattern& pattern = orbit.kernel.pattern;
+    const std::string key = fmt::format("{},{},{}", pattern.free_steps, pattern.contact_steps, csv_number(level));
+    const Eigen::VectorXd tip = tip_displacement(orbit);
+    const Eigen::VectorXd force = contact_force(orbit);
+    const double step = orbit.mesh().time_step(orbit.bar);
+    std::string rows;
+    for (Eigen::Index n = 0; n < tip.size(); ++n) {
+        rows += fmt::format("{},{},{},{}\n", key, csv_number(static_cast<double>(n) * step), csv_number(tip[n]),
+                            csv_number(force[n % force.size()]));
+    }
+    return rows;
+}
+
 std::string summary_table(const SweepSummary& summary) {
     std::string table = summary.interrupted ? "interrupted: what was done until then\n" : "";
     const auto row = [&table](const char* what, const std::string& value) {

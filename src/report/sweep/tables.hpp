@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,11 @@ namespace nsma {
 [[nodiscard]] std::string timings_csv_header();
 [[nodiscard]] std::vector<std::string> timings_csv_rows(const PatternRecord& record);
 [[nodiscard]] std::vector<std::string> timings_csv_rows(const OrbitAnswer& answer);
+
+/// Columns of curves.csv: motion and force of an orbit over one period, n_T + 1 rows; a force is that of the step that
+/// begins at its time, the last row begins the next period.
+[[nodiscard]] std::string curves_csv_header();
+[[nodiscard]] std::string curves_csv_rows(const Orbit& orbit, std::optional<double> level);
 
 /// The counts of a sweep as an aligned table; ends with a line end.
 [[nodiscard]] std::string summary_table(const SweepSummary& summary);
