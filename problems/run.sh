@@ -30,7 +30,7 @@ cmake --preset release
 cmake --build --preset release --target nsma_app
 
 say "sweeping problems/first-mode.toml"
-build/release/nsma sweep problems/first-mode.toml --solver both --out out/first-mode
+build/release/nsma sweep problems/first-mode.toml --solver both --out out/first-mode --fresh
 
 say "results in $top/out/first-mode:"
 ls -1 out/first-mode
