@@ -18,6 +18,10 @@ constexpr double fastest_sound = 3e4;    // m/s; diamond has 18,000
 
 }  // namespace
 
+bool is_unit_bar(const Bar& bar) {
+    return bar.length == 1 && bar.young_modulus == 1 && bar.density == 1 && bar.area == 1;
+}
+
 std::string si_text(double value, const std::string& unit) {
     const ScaledUnit scaled = scaled_unit(std::abs(value), unit);
     return fmt::format("{:.5g} {}", value * scaled.factor, scaled.unit);
@@ -44,7 +48,7 @@ std::string derived_text(const Scene& scene) {
 
 std::vector<std::string> doubts(const Scene& scene) {
     const Bar& bar = scene.bar;
-    if (bar.length == 1 && bar.young_modulus == 1 && bar.density == 1 && bar.area == 1) return {};
+    if (is_unit_bar(bar)) return {};
     std::vector<std::string> found;
     const double strain = std::abs(bar.gap) / bar.length;
     if (strain > largest_strain) {

@@ -7,6 +7,9 @@
 
 namespace nsma {
 
+/// Whether length, modulus, density and area are all one: a bar without units, shown in units of tau and d.
+[[nodiscard]] bool is_unit_bar(const Bar& bar);
+
 /// A value with the SI prefix that suits it: "98.2 µs".
 [[nodiscard]] std::string si_text(double value, const std::string& unit);
 

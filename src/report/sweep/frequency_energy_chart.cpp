@@ -6,6 +6,7 @@
 
 #include "sweep_charts.hpp"
 #include "nsma/orbit/backbone.hpp"
+#include "report/bar_text.hpp"
 
 namespace nsma {
 namespace {
@@ -89,6 +90,10 @@ std::string segment(double energy, double frequency, double length) {
     return fmt::format("{} {} {}\n", energy, frequency, length);
 }
 
+/// Energy E/E_g at which the tip of the linear mode with a free end and frequency n omega_1, n odd, reaches the wall:
+/// x = d sin(n pi s/2L) stores (n pi)^2/8 E_g.
+double grazing_energy(int n) { return std::pow(n * 3.14159265358979323846, 2) / 8.0; }
+
 /// The chart, drawn from the bottom to the top.
 struct Diagram {
     Axes axes;
@@ -102,40 +107,73 @@ struct Diagram {
 
 bool is_contact(const Pattern& pattern) { return pattern_kind(pattern) == PatternKind::contact; }
 
-void draw_linear_modes(Diagram& diagram) {
+// Linear vibrations, those with a free end up to the energy at which their tip reaches an open gap.
+void draw_linear_modes(Diagram& diagram, int gap_sign) {
     const auto& [energy, frequency] = diagram.axes;
-    std::string odd, even, ticks;
+    std::string odd, even, grazing;
     for (int n = std::max(1, static_cast<int>(std::ceil(frequency.lo))); n <= frequency.hi; ++n) {
-        (n % 2 == 1 ? odd : even) += point(energy.lo, n) + point(energy.hi, n) + "\n";
-        ticks += fmt::format("{}'{}ω_1' {}", ticks.empty() ? "" : ", ", n == 1 ? "" : std::to_string(n), n);
+        const bool free = n % 2 == 1;
+        const double end = free && gap_sign > 0 ? grazing_energy(n) : energy.hi;
+        if (end > energy.lo) (free ? odd : even) += point(energy.lo, n) + point(std::min(end, energy.hi), n) + "\n";
+        if (free && gap_sign > 0 && end > energy.lo && end < energy.hi) grazing += point(end, n);
+        diagram.panel.settings += fmt::format(
+            "set label '{}ω_1' at graph 1, first {} right offset -0.5,0.6 textcolor rgb "
+            "'#888888'\n",
+            n == 1 ? "" : std::to_string(n), n);
     }
     diagram.draw("linear-free-fixed", odd, "1:2", "lines lw 1 dt 2 lc rgb '#888888'", "linear, free end");
+    diagram.draw("grazing", grazing, "1:2", "points pt 3 ps 1.2*mark lw 1.5 lc rgb '#555555'",
+                 "its tip grazes the wall");
     diagram.draw("linear-fixed-fixed", even, "1:2", "lines lw 1 dt 3 lc rgb '#888888'", "linear, end held");
-    if (ticks.empty()) return;
-    diagram.chart.settings += fmt::format("set y2range [{}]\nset y2tics out ({})\n", diagram.panel.y.range, ticks);
+}
+
+// Of a bar with units a second pair of axes, in joules and hertz.
+void add_physical_axes(Diagram& diagram, const Bar& bar) {
+    if (is_unit_bar(bar)) return;
+    const double linear = 0.25 / bar.travel_time();  // f_1 [Hz]
+    const ScaledUnit hertz = scaled_unit(linear * diagram.axes.frequency.hi, "Hz");
+    const double hertz_each = linear * hertz.factor;
+    diagram.panel.settings +=
+        fmt::format("set y2range [{}]\nset y2tics out\nset y2label 'frequency ({})' offset 0.5,0\n",
+                    range(diagram.axes.frequency.lo * hertz_each, diagram.axes.frequency.hi * hertz_each), hertz.unit);
+    diagram.panel.frame->right = 0.88;
+    if (bar.gap == 0) return;
+    const double joules = bar.energy_unit();
+    const ScaledUnit unit = scaled_unit(joules * diagram.axes.energy.hi, "J");
+    const double joules_each = joules * unit.factor;
+    diagram.panel.settings += fmt::format(
+        "set logscale x2\nset x2range [{}]\nset x2tics out format '%g'\nset x2label 'energy E ({})' offset 0,-0.5\n",
+        range(diagram.axes.energy.lo * joules_each, diagram.axes.energy.hi * joules_each), unit.unit);
+    diagram.panel.frame->top = 0.83;
+    diagram.chart.settings += "set border 15\nset title offset 0,0.3\n";
 }
 
 void draw_modes(Diagram& diagram, int gap_sign) {
     const char* place = gap_sign == 0  ? "left offset 0.8,0.8"
                         : gap_sign > 0 ? "right offset -1.2,0.7"
                                        : "right offset -1.0,-0.7";
-    std::string rows;
+    std::string rows, limits;
+    const auto& [shown, frequencies] = diagram.axes;
     for (int mode = 1; mode <= most_modes; ++mode) {
         const auto points = backbone(mode, gap_sign, diagram.axes);
         if (points.empty()) continue;
+        const double limit = 4.0 * mode * mode / (2.0 * mode + 1.0);
+        if (gap_sign != 0 && limit > frequencies.lo && limit < frequencies.hi)
+            limits += point(shown.lo, limit) + point(shown.hi, limit) + "\n";
         for (const auto& [energy, frequency] : points) rows += point(energy, frequency);
         rows += "\n";
         const auto& [energy, frequency] = points[gap_sign == 0 ? 0 : points.size() / 3];
         diagram.panel.settings += fmt::format("set label 'k = {}' at first {},{} {} textcolor rgb '#555555'\n", mode,
                                               energy, frequency, place);
     }
+    diagram.draw("limits", limits, "1:2", "lines lw 1 dt 4 lc rgb '#aaaaaa'", "exact mode, E → ∞");
     diagram.draw("exact-modes", rows, "1:2", "lines lw 5 lc rgb '#c8c8c8'", "exact mode k");
 }
 
 void draw_records(Diagram& diagram, const StoredSweep& sweep) {
     const auto& [shown, frequencies] = diagram.axes;
     const double tick = 0.02 * (frequencies.hi - frequencies.lo);
-    std::string no_contact, interval, unbounded, least_energy, single, solved, doubtful;
+    std::string no_contact, interval, unbounded, least_energy, single, solved, unproved, doubtful, absent;
     for (const PatternRecord& record : sweep.patterns) {
         if (record.verdict != Verdict::admissible || !record.interval.least) continue;
         const double frequency = record.pattern.frequency_ratio();
@@ -153,16 +191,19 @@ void draw_records(Diagram& diagram, const StoredSweep& sweep) {
         }
     }
     for (const StoredLevel& level : sweep.levels) {
-        if (level.verdict != Verdict::admissible || !level.level || !level.energy) continue;
         const double frequency = level.pattern.frequency_ratio();
+        const bool none = level.verdict == Verdict::below || level.verdict == Verdict::above;
+        if (none && level.level && is_contact(level.pattern)) absent += point(*level.level, frequency);
+        if (level.verdict != Verdict::admissible || !level.level || !level.energy) continue;
         const bool differ =
             level.agreement == name(Agreement::different_optimum) || level.agreement == name(Agreement::one_failed);
         if (is_contact(level.pattern)) {
-            (differ ? doubtful : solved) += point(*level.energy, frequency);
+            (differ ? doubtful : level.proved ? solved : unproved) += point(*level.energy, frequency);
         } else {
             no_contact += segment(*level.energy, frequency - 0.5 * tick, tick);
         }
     }
+    diagram.draw("levels-without-orbit", absent, "1:2", "points pt 7 ps 0.3*mark lc rgb '#aaaaaa'", "level, no orbit");
     diagram.draw("no-contact-motion", no_contact, "1:2:(0):3", "vectors nohead lw 1 lc rgb '#999999'",
                  "no contact motion");
     diagram.draw("intervals", interval, "1:2:3:(0)", "vectors nohead lw 2 lc rgb '#0072b2'", "energy interval");
@@ -171,6 +212,8 @@ void draw_records(Diagram& diagram, const StoredSweep& sweep) {
     diagram.draw("least-energies", least_energy, "1:2", "points pt 13 ps 0.8*mark lc rgb '#0072b2'", "least energy");
     diagram.draw("single-orbits", single, "1:2", "points pt 7 ps 0.7*mark lc rgb '#000000'", "single orbit");
     diagram.draw("levels-solved", solved, "1:2", "points pt 6 ps 1.1*mark lw 2 lc rgb '#d55e00'", "level solved");
+    diagram.draw("levels-unproved", unproved, "1:2", "points pt 4 ps 1.1*mark lw 2 lc rgb '#d55e00'",
+                 "solved, not proved best");
     diagram.draw("levels-solvers-differ", doubtful, "1:2", "points pt 2 ps 1.1*mark lw 2 lc rgb '#d55e00'",
                  "solvers differ");
 }
@@ -193,9 +236,15 @@ Chart frequency_energy_chart(const StoredSweep& sweep) {
          .x = {closed ? "energy E (J)" : "energy E/E_g,  E_g = Y S d^2 / (2L)", range(axes.energy.lo, axes.energy.hi)},
          .y = {"frequency ω/ω_1", range(axes.frequency.lo, axes.frequency.hi)},
          .key = "at screen 0.525, screen 0.14 center top vertical maxrows 3 samplen 3 width 1"}};
-    draw_linear_modes(diagram);
+    draw_linear_modes(diagram, sweep.scene.bar.gap_sign());
     draw_modes(diagram, sweep.scene.bar.gap_sign());
     draw_records(diagram, sweep);
+    add_physical_axes(diagram, sweep.scene.bar);
+    const auto entries = std::count_if(diagram.panel.curves.begin(), diagram.panel.curves.end(),
+                                       [](const Curve& curve) { return !curve.title.empty(); });
+    // Three columns at most: a fourth would leave the picture.
+    diagram.panel.key = fmt::format("at screen 0.525, screen 0.145 center top vertical maxrows {} samplen 3 width 1",
+                                    std::max<std::ptrdiff_t>(3, (entries + 2) / 3));
     diagram.chart.panels = {diagram.panel};
     return diagram.chart;
 }

@@ -90,8 +90,8 @@ StoredSweep read_sweep_folder(const fs::path& folder) {
         if (result.record) sweep.patterns.push_back(std::move(*result.record));
         if (!result.answer) return;
         OrbitAnswer& answer = *result.answer;
-        sweep.levels.push_back(
-            {answer.pattern, answer.level, answer.verdict, answer.energy, std::string(name(answer.agreement))});
+        sweep.levels.push_back({answer.pattern, answer.level, answer.verdict, answer.energy,
+                                std::string(name(answer.agreement)), proved_best(answer)});
         if (answer.orbit) {
             sweep.orbits.push_back({answer.level, answer.energy.value_or(0.0), std::move(*answer.orbit)});
         }

@@ -33,6 +33,7 @@ struct StoredLevel {
     Verdict verdict = Verdict::failed;
     std::optional<double> energy;  ///< in energy units of the bar
     std::string agreement;
+    bool proved = false;  ///< the best orbit of its level
 };
 
 struct StoredOrbit {
