@@ -22,7 +22,7 @@ seconds=${1-60}
 top=$(CDPATH='' cd -- "$(dirname -- "$0")/../.." && pwd)
 cd "$top"
 . problems/setup.sh
-packages="$packages clang"
+packages="$packages clang libclang-rt-14-dev"  # which clang only recommends
 install_packages
 
 say "building the fuzz targets"
