@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <functional>
 
@@ -7,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "words.hpp"
 
 #include "numerics/linear_program.hpp"
 #include "numerics/solver.hpp"
@@ -19,15 +19,6 @@ namespace nsma::app {
 namespace {
 
 using Option = std::function<void(CLI::App& command, Arguments& arguments)>;
-
-// The number that a word is from its first to its last character, decimal whatever it begins with.
-template <class Value>
-std::optional<Value> number_in(std::string_view word) {
-    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-    Value value{};
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size() ? std::optional(value) : std::nullopt;
-}
 
 // Accepts the numbers that fit; `description` stands in the help, `expected` in the refusal. What is accepted is
 // written so that the library, which takes 010 for eight, reads it as it was read here.
@@ -110,15 +101,6 @@ Option pattern(bool required) {
         contact->needs(free);
         if (CLI::Option* period = command.get_option_no_throw("--period")) period->excludes(free);
     };
-}
-
-// An energy and whether it is in joules: 12.6, 0.8J.
-std::optional<std::pair<double, bool>> energy_in(std::string_view word) {
-    const bool joules = word.ends_with('J');
-    if (joules) word.remove_suffix(1);
-    const auto value = number_in<double>(word);
-    if (!value || !(*value >= least_level && *value <= greatest_level)) return std::nullopt;
-    return std::pair{*value, joules};
 }
 
 void energy(CLI::App& command, Arguments& arguments) {

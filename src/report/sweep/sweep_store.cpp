@@ -1,7 +1,6 @@
 #include "sweep_store.hpp"
 
 #include <array>
-#include <bit>
 #include <charconv>
 #include <optional>
 
@@ -9,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "database.hpp"
+#include "result_checksum.hpp"
 #include "store_tables.hpp"
 #include "sweep_folder.hpp"
 #include "nsma/orbit/replay.hpp"
-#include "orbit/fnv_hash.hpp"
 #include "nsma/report/scene_file.hpp"
 
 namespace nsma {
@@ -43,42 +42,6 @@ RecordRow row_with(std::initializer_list<const std::string*> texts) {
     RecordRow row;
     for (const std::string* text : texts) row.emplace_back(*text);
     return row;
-}
-
-void add(FnvHash& hash, const std::string& text) {
-    hash.add(text.size());
-    for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
-}
-
-std::string hash_of(const std::string& text) {
-    FnvHash hash;
-    for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
-    return fmt::format("{:016x}", hash.value());
-}
-
-void add(FnvHash& hash, const RecordRow& row) {
-    constexpr std::size_t integer_index = 2;
-    static_assert(std::is_same_v<std::variant_alternative_t<integer_index, FieldValue>, std::int64_t>);
-    hash.add(row.size());
-    for (const FieldValue& value : row) {
-        const auto* truth = std::get_if<bool>(&value);
-        hash.add(truth != nullptr ? integer_index : value.index());  // SQLite has no truth values
-        if (truth != nullptr) hash.add(*truth ? 1 : 0);
-        if (const auto* whole = std::get_if<std::int64_t>(&value)) hash.add(static_cast<std::uint64_t>(*whole));
-        if (const auto* real = std::get_if<double>(&value)) hash.add(std::bit_cast<std::uint64_t>(*real));
-        if (const auto* text = std::get_if<std::string>(&value)) add(hash, *text);
-    }
-}
-
-// Of a result with everything that belongs to it, so that no row of it can be lost or changed unseen.
-std::int64_t checksum(const ResultRows& rows, const std::string& beta) {
-    FnvHash hash;
-    hash.add(static_cast<std::uint64_t>(rows.pattern));
-    hash.add(static_cast<std::uint64_t>(rows.place));
-    add(hash, rows.record);
-    for (const RecordRow& run : rows.runs) add(hash, run);
-    add(hash, beta);
-    return static_cast<std::int64_t>(hash.value());
 }
 
 // Throws std::invalid_argument where the parts of a result contradict each other or its orbit is none.
