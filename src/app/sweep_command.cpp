@@ -143,7 +143,7 @@ int run_sweep(const Arguments& arguments) {
     if (crew.helper()) return help(crew, arguments);
     const Scene scene = arguments.scene();
     const FolderLock lock(arguments.out);
-    const std::filesystem::path part = std::filesystem::path(arguments.out) / "results.sqlite.part";
+    const std::filesystem::path part = std::filesystem::path(arguments.out) / store_part_name;
     if (std::error_code code; !arguments.resume && !arguments.fresh && std::filesystem::exists(part, code)) {
         throw InputError(
             part.string() +
@@ -180,8 +180,9 @@ int run_plot(const Arguments& arguments) {
     expect_sweep_folder(arguments.input);
     const FolderLock lock(arguments.input);
     if (arguments.free_steps > 0) {
-        const Scene scene = SweepStore(arguments.input).scene();
-        list(draw_orbit(arguments.input, arguments.free_steps, arguments.contact_steps, arguments.level(scene)),
+        const StoredSweep sweep = read_sweep_folder(arguments.input);
+        const std::optional<double> level = arguments.level(sweep.scene);
+        list(draw_orbit(sweep, arguments.input, arguments.free_steps, arguments.contact_steps, level),
              !arguments.quiet);
     } else {
         draw(arguments.input, !arguments.quiet);

@@ -248,9 +248,9 @@ void read_levels(const SceneValue& section, Scene& scene) {
     scene.levels = read_level_numbers(section);
     const SceneValue unit = section["unit"];
     const bool closed = scene.bar.gap_sign() == 0;
-    scene.joules = unit.missing() ? closed : unit.is_second("E_g", "J");
-    if (closed && !scene.joules) unit.fail("\"J\", as a closed gap has no E_g");
-    if (closed || !scene.joules) return;
+    const bool in_joules = unit.missing() ? closed : unit.is_second("E_g", "J");
+    if (closed && !in_joules) unit.fail("\"J\", as a closed gap has no E_g");
+    if (closed || !in_joules) return;
     for (double& level : scene.levels) {
         const double joules = level;
         level /= scene.bar.energy_unit();

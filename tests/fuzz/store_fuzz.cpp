@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include "../support/sweep_scene.hpp"
 #include "fuzz.hpp"
 
 #include "study/sweep/sweep_queue.hpp"
@@ -16,23 +17,6 @@
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* scene_text = R"(title = "A sample"
-[bar]
-length = 2.0
-young_modulus = 3.0
-density = 1.0
-area = 1.0
-gap = 0.1
-[mesh]
-cells = 6
-[patterns]
-list = [[16, 4], [3, 3], [5, 1]]
-[levels]
-list = [1.6, 12.0]
-[program]
-objective = "nearest"
-)";
 
 std::string contents(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -47,7 +31,7 @@ struct Sound {
 
     Sound() {
         fs::create_directories(folder);
-        const nsma::Scene scene = nsma::parse_scene(scene_text, "sample");
+        const nsma::Scene scene = nsma::parse_scene(sweep_scene_text, "sample");
         {
             nsma::SweepStore made(folder, scene, {"nsma", "solver proof"}, nsma::SweepStore::Mode::fresh);
             nsma::SweepQueue queue(scene, {}, nsma::SweepQueue::Order::scene);

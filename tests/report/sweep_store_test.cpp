@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 
 #include "../study/run_sweep.hpp"
+#include "../support/sweep_scene.hpp"
 #include "sample.hpp"
 #include "study/sweep/sweep_queue.hpp"
 #include "nsma/report/scene_file.hpp"
@@ -19,23 +20,6 @@ namespace {
 using sample::error_of;
 using testing::HasSubstr;
 using Mode = SweepStore::Mode;
-
-constexpr const char* scene_text = R"(title = "A sample"
-[bar]
-length = 2.0
-young_modulus = 3.0
-density = 1.0
-area = 1.0
-gap = 0.1
-[mesh]
-cells = 6
-[patterns]
-list = [[16, 4], [23, 1], [3, 3], [5, 1]]
-[levels]
-list = [0.5, 1.6, 12.0]
-[program]
-objective = "nearest"
-)";
 
 /// Writes tables without a store between.
 class TableSink : public SweepSink {
@@ -50,7 +34,7 @@ public:
 
 class SweepStoreTest : public sample::Folder {
 protected:
-    Scene scene = parse_scene(scene_text, "sample");
+    Scene scene = parse_scene(sweep_scene_text, "sample");
     StoreVersions versions{"nsma 1", "solver both"};
 
     /// Does up to `limit` further units, as nsma sweep does; true when none is left.

@@ -38,7 +38,6 @@ struct Scene {
     PatternSelection patterns;
     bool all_kinds = false;      ///< solve free and stuck patterns as well as contact motions
     std::vector<double> levels;  ///< energy ratios E/E_g, joules for a closed gap; all > 0
-    bool joules = false;         ///< whether the file gives them in joules, which another gap leaves as they are
     Objective objective = Objective::least_shock;
     std::string text;  ///< the scene file as read; empty for a scene made in code
 };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -92,7 +93,7 @@ std::string segment(double energy, double frequency, double length) {
 
 /// Energy E/E_g at which the tip of the linear mode with a free end and frequency n omega_1, n odd, reaches the wall:
 /// x = d sin(n pi s/2L) stores (n pi)^2/8 E_g.
-double grazing_energy(int n) { return std::pow(n * 3.14159265358979323846, 2) / 8.0; }
+double grazing_energy(int n) { return std::pow(n * std::numbers::pi, 2) / 8.0; }
 
 /// The chart, drawn from the bottom to the top.
 struct Diagram {

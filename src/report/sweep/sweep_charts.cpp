@@ -78,9 +78,8 @@ DrawnCharts draw_sweep(const std::filesystem::path& sweep_folder) {
     return drawn;
 }
 
-DrawnCharts draw_orbit(const std::filesystem::path& sweep_folder, int free_steps, int contact_steps,
-                       std::optional<double> level) {
-    const StoredSweep sweep = read_sweep_folder(sweep_folder);
+DrawnCharts draw_orbit(const StoredSweep& sweep, const std::filesystem::path& sweep_folder, int free_steps,
+                       int contact_steps, std::optional<double> level) {
     const StoredOrbit* found = nullptr;
     const auto distance = [&](const StoredOrbit& orbit) { return std::abs(std::log(*orbit.level / *level)); };
     for (const StoredOrbit& orbit : sweep.orbits) {

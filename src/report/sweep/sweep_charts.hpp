@@ -40,9 +40,9 @@ struct DrawnCharts {
 };
 [[nodiscard]] DrawnCharts draw_sweep(const std::filesystem::path& sweep_folder);
 
-/// Draws one stored orbit, its least-energy orbit without a level (energy units), else the one at the nearest level.
-/// Throws InputError where the sweep has none of this pattern.
-[[nodiscard]] DrawnCharts draw_orbit(const std::filesystem::path& sweep_folder, int free_steps, int contact_steps,
-                                     std::optional<double> level);
+/// Draws one orbit of a sweep into folder/charts: its least-energy orbit without a level (energy units), else the one
+/// at the nearest level. Throws InputError where the sweep has none of this pattern.
+[[nodiscard]] DrawnCharts draw_orbit(const StoredSweep& sweep, const std::filesystem::path& sweep_folder,
+                                     int free_steps, int contact_steps, std::optional<double> level);
 
 }  // namespace nsma

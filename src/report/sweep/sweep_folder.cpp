@@ -66,11 +66,11 @@ void expect_sweep_folder(const fs::path& folder) {
     if (!fs::is_directory(status)) {
         fail(folder, fmt::format("expected the folder of a sweep, got {}", fs::exists(status) ? "a file" : "nothing"));
     }
-    for (const char* store : {"results.sqlite", "results.sqlite.part"}) {
+    for (const char* store : {store_name, store_part_name}) {
         if (fs::exists(folder / store, code)) return;
         if (code) fail(folder / store, fmt::format("cannot be read: {}", code.message()));
     }
-    fail(folder, "expected the folder of a sweep, got one without results.sqlite");
+    fail(folder, fmt::format("expected the folder of a sweep, got one without {}", store_name));
 }
 
 SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)

@@ -9,6 +9,10 @@
 
 namespace nsma {
 
+/// The store of a sweep: its name once complete, and until then.
+inline constexpr const char* store_name = "results.sqlite";
+inline constexpr const char* store_part_name = "results.sqlite.part";
+
 /// Files of a sweep in its folder, beside scene.toml; columns and units: data/README.md.
 inline constexpr std::array<const char*, 6> sweep_files{"patterns.csv", "levels.csv",  "orbits.jsonl",
                                                         "timings.csv",  "summary.txt", "summary.json"};

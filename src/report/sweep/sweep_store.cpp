@@ -19,10 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* final_name = "results.sqlite";
-constexpr const char* part_name = "results.sqlite.part";
 // Raised with every change of the tables below, or of what a level's answer follows from.
 constexpr const char* format = "4";
+
 // What is made for a new store: names, and the statements that make them.
 std::vector<std::pair<std::string, std::string>> schema() {
     std::vector<std::pair<std::string, std::string>> all{
@@ -132,13 +131,6 @@ struct SweepStore::Implementation {
             DatabaseStatement(*database, "INSERT OR REPLACE INTO sweep (key, value, checksum) VALUES (?, ?, ?)")
                 .insert({}, row_with({&key, &value, &sum}));
         });
-    }
-
-    [[nodiscard]] double seconds() const {
-        const std::string text = info("seconds");
-        double value = 0;
-        std::from_chars(text.data(), text.data() + text.size(), value);
-        return value;
     }
 
     // Rows by table, in words.
@@ -262,10 +254,10 @@ SweepStore::SweepStore(const fs::path& folder, const Scene& scene, const StoreVe
     prepare_sweep_folder(folder, scene);
     self.folder = folder;
     self.scene = scene;
-    const fs::path part = folder / part_name;
+    const fs::path part = folder / store_part_name;
     const bool has_part = fs::exists(part);
-    if (mode == Mode::resume && !has_part && fs::exists(folder / final_name)) {
-        self.open(folder / final_name, false);
+    if (mode == Mode::resume && !has_part && fs::exists(folder / store_name)) {
+        self.open(folder / store_name, false);
         self.check(versions);
         return;
     }
@@ -287,9 +279,9 @@ SweepStore::SweepStore(const fs::path& folder) : implementation_(std::make_uniqu
     auto& self = *implementation_;
     self.folder = folder;
     expect_sweep_folder(folder);
-    const bool final = fs::exists(folder / final_name);
+    const bool final = fs::exists(folder / store_name);
     // A part file may have a journal to take in, which is writing.
-    self.open(folder / (final ? final_name : part_name), !final);
+    self.open(folder / (final ? store_name : store_part_name), !final);
     if (!self.started()) fail(self.file, "expected the results of a sweep, got an empty store");
     if (self.stored_format() != format) {
         fail(self.file, fmt::format("format of the store: expected {}, got {}", format, self.stored_format()));
@@ -305,7 +297,12 @@ const Scene& SweepStore::scene() const { return implementation_->scene; }
 
 bool SweepStore::complete() const { return implementation_->info("complete") == "1"; }
 
-double SweepStore::seconds() const { return implementation_->seconds(); }
+double SweepStore::seconds() const {
+    const std::string text = implementation_->info("seconds");
+    double value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
 
 void SweepStore::add_seconds(double more) { implementation_->set_info("seconds", fmt::format("{}", seconds() + more)); }
 
@@ -368,7 +365,7 @@ void SweepStore::for_each(const std::function<void(WorkResult)>& visit) const {
 
 void SweepStore::finish() {
     auto& self = *implementation_;
-    if (self.file.filename() != part_name) return;
+    if (self.file.filename() != store_part_name) return;
     self.set_info("results", self.count_results());
     self.set_info("complete", "1");
     self.inserts.reset();
@@ -379,16 +376,16 @@ void SweepStore::finish() {
     });
     self.database.reset();
     std::error_code code;
-    fs::rename(self.file, self.folder / final_name, code);
-    if (code) fail(self.folder / final_name, fmt::format("cannot be written: {}", code.message()));
-    self.open(self.folder / final_name, false);
+    fs::rename(self.file, self.folder / store_name, code);
+    if (code) fail(self.folder / store_name, fmt::format("cannot be written: {}", code.message()));
+    self.open(self.folder / store_name, false);
 }
 
 std::string SweepStore::file_name() const { return implementation_->file.filename().string(); }
 
 bool SweepStore::beside_complete() const {
     const auto& self = *implementation_;
-    return self.file.filename() == part_name && fs::exists(self.folder / final_name);
+    return self.file.filename() == store_part_name && fs::exists(self.folder / store_name);
 }
 
 }  // namespace nsma
