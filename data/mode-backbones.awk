@@ -3,8 +3,6 @@
 # sign of the gap = sign of w, E/E_g = N^2 / w^2, omega/omega_1 = 4 N / n_T. r, p >= 1 and w != 0.
 BEGIN {
     OFS = ","
-    print "# Nonsmooth modes k = 1..4 of a bar against a wall, gap_sign +1 (gap > 0) and -1 (gap < 0)."
-    print "# Made by data/mode-backbones.awk from the closed form; provenance and units: data/README.md."
     print "mode,gap_sign,cells,period_steps,free_steps,contact_steps,frequency_ratio,energy_numerator,energy_denominator,energy_ratio"
     for (argument = 1; argument < ARGC; ++argument) {
         n = ARGV[argument]

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "draw.hpp"
 #include "progress.hpp"
 #include "standard_streams.hpp"
 
@@ -8,6 +9,7 @@
 #include "study/accuracy/accuracy.hpp"
 #include "nsma/report/input_error.hpp"
 #include "report/accuracy/accuracy_folder.hpp"
+#include "report/bar_text.hpp"
 #include "report/folder_lock.hpp"
 
 namespace nsma::app {
@@ -23,6 +25,7 @@ int run_accuracy(const Arguments& arguments) {
                                      name(scene.objective)));
     }
     const FolderLock lock(arguments.out);
+    fmt::print("{}\n", derived_text(scene));
     AccuracyFolder folder(arguments.out, scene);
     Progress progress("accuracy", arguments.quiet);
     bool whole = false;
@@ -41,13 +44,7 @@ int run_accuracy(const Arguments& arguments) {
         return exit_interrupted;
     }
     folder.finish();
-    const std::filesystem::path charts = std::filesystem::path(arguments.out) / "charts";
-    draw_if_possible([&] {
-        for (const Chart& chart : accuracy_charts(folder.results())) {
-            draw_chart(chart, charts);
-            fmt::print("chart    {}\n", (charts / (chart.name + ".png")).string());
-        }
-    });
+    draw_if_possible(accuracy_charts(folder.results()), arguments.out);
     fmt::print("results are in {}\n", arguments.out);
     return exit_done;
 }

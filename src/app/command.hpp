@@ -7,6 +7,7 @@
 
 #include "nsma/search/orbit_solver.hpp"
 #include "nsma/study/scan.hpp"
+#include "report/chart.hpp"
 
 namespace nsma::app {
 
@@ -34,6 +35,7 @@ struct Arguments {
     bool quiet = false;
     bool verbose = false;
     bool fresh = false;  ///< whatever the folder holds
+    Drawing drawing;     ///< of `plot`
 
     /// The scene with what is said anew, checked. This and the next throw InputError.
     [[nodiscard]] Scene scene() const;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -187,6 +188,55 @@ void one_orbit(CLI::App& command, Arguments& arguments) {
                  "R,P[,E]"});
 }
 
+// Words between commas.
+std::vector<std::string> parts(const std::string& word) {
+    std::vector<std::string> found;
+    std::istringstream stream(word + ',');
+    for (std::string part; std::getline(stream, part, ',');) found.push_back(part);
+    return found;
+}
+
+void drawing(CLI::App& command, Arguments& arguments) {
+    const auto known = [](const std::string& word) {
+        const auto formats = parts(word);
+        return std::all_of(formats.begin(), formats.end(), [](const std::string& format) {
+            return std::find(picture_formats.begin(), picture_formats.end(), format) != picture_formats.end();
+        });
+    };
+    command
+        .add_option_function<std::string>(
+            "--format", [&arguments](const std::string& word) { arguments.drawing.formats = parts(word); },
+            "svg, png, pdf or several, as svg,pdf (default svg,png)")
+        ->check(word_of("svg, png, pdf or several with commas between", known));
+    const auto size_in = [](const std::string& word) -> std::optional<std::array<std::optional<int>, 2>> {
+        constexpr int least = 100;
+        constexpr int most = 20'000;
+        const auto fits = [](const std::optional<int>& value) { return value && *value >= least && *value <= most; };
+        const std::size_t cross = word.find('x');
+        const auto width = number_in<int>(std::string_view(word).substr(0, cross));
+        if (!fits(width)) return std::nullopt;
+        if (cross == std::string::npos) return std::array{width, std::optional<int>()};
+        const auto height = number_in<int>(std::string_view(word).substr(cross + 1));
+        return fits(height) ? std::optional(std::array{width, height}) : std::nullopt;
+    };
+    const auto set = [&arguments, size_in](const std::string& word) {
+        const auto size = size_in(word).value();
+        arguments.drawing.width = size[0];
+        arguments.drawing.height = size[1];
+    };
+    command
+        .add_option_function<std::string>(
+            "--size", set,
+            "WIDTH or WIDTHxHEIGHT in pixels, of a PDF in points (1/72 inch); letters and "
+            "lines grow with the width")
+        ->check({[size_in](const std::string& word) {
+                     return size_in(word) ? std::string()
+                                          : "expected WIDTH or WIDTHxHEIGHT of 100 to 20000, such as 1600x1000, got " +
+                                                shortened(word);
+                 },
+                 "W[xH]"});
+}
+
 struct Entry {
     const char* name;
     const char* summary;
@@ -197,7 +247,7 @@ struct Entry {
 
 std::vector<Entry> commands() {
     const Option scene = text("SCENE", &Arguments::input, "scene file (TOML)");
-    const Option sweep_folder = text("DIR", &Arguments::input, "folder of a sweep");
+    const Option folder = text("DIR", &Arguments::input, "folder that nsma wrote");
     const Option out_folder = text("--out", &Arguments::out, "folder for the results; made if missing");
     const Option all_kinds =
         flag("--all-kinds", &Arguments::all_kinds,
@@ -240,8 +290,8 @@ std::vector<Entry> commands() {
          "  nsma sweep problems/first-mode.toml --out out/first-mode --resume",
          run_sweep},
         {"export",
-         "write the tables and the summary of a stored sweep again",
-         {sweep_folder, distinct,
+         "write the tables of a folder again from what it stores",
+         {folder, distinct,
           flag("--curves", &Arguments::curves, "also curves.csv: motion and force of every orbit, row by row")},
          "Example:\n  nsma export out/first-mode --curves",
          run_export},
@@ -259,11 +309,11 @@ std::vector<Entry> commands() {
          "  nsma sensitivity problems/first-mode.toml --free 48 --contact 16 --energy 30 --out out/one",
          run_sensitivity},
         {"plot",
-         "draw the charts of a stored sweep again",
-         {sweep_folder, one_orbit, flag("--quiet", &Arguments::quiet, "print no list of charts")},
+         "draw the charts of a folder again, or of one orbit of a sweep",
+         {folder, one_orbit, drawing, flag("--quiet", &Arguments::quiet, "print no list of charts")},
          "Examples:\n"
          "  nsma plot out/first-mode\n"
-         "  nsma plot out/first-mode --orbit 60,10,12.6",
+         "  nsma plot out/first-mode --orbit 60,10,12.6 --format pdf --size 480x300",
          run_plot},
         {"prove",
          "write exact certificates of the verdicts and energy intervals, one a line",

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "draw.hpp"
 #include "standard_streams.hpp"
 
 #include "nsma/orbit/physical_values.hpp"
@@ -8,10 +9,9 @@
 #include "nsma/report/orbit_json.hpp"
 #include "report/bar_text.hpp"
 #include "report/folder_lock.hpp"
+#include "report/orbit_folder.hpp"
 #include "report/record_values.hpp"
-#include "report/results_folder.hpp"
 #include "report/sweep/sweep_charts.hpp"
-#include "report/sweep/tables.hpp"
 
 namespace nsma::app {
 namespace {
@@ -117,14 +117,9 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, bool verb
 // Charts, curves and JSON of an orbit in a folder of their own.
 void write_orbit(const std::filesystem::path& folder, const Scene& scene, const OrbitAnswer& answer, bool list) {
     const FolderLock lock(folder);
-    prepare_results_folder(folder, scene, {});
-    write_whole(folder / "orbit.json", orbit_json(answer, scene.bar) + "\n");
-    write_whole(folder / "curves.csv", curves_csv_header() + "\n" + curves_csv_rows(*answer.orbit, answer.level));
+    write_orbit_folder(folder, scene, answer);
     const StoredOrbit orbit{answer.level, *answer.energy, *answer.orbit};
-    draw_if_possible([&] {
-        for (const auto& picture : draw_charts(charts_of(scene, orbit, "orbit"), folder / "charts"))
-            if (list) fmt::print("chart    {}\n", picture.string());
-    });
+    draw_if_possible(charts_of(scene, orbit, "orbit"), folder, !list);
 }
 
 // The exit code of an answer.

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "draw.hpp"
 #include "progress.hpp"
 #include "standard_streams.hpp"
 
 #include "nsma/numerics/interruption.hpp"
 #include "nsma/study/sensitivity/sensitivity.hpp"
+#include "report/bar_text.hpp"
 #include "report/folder_lock.hpp"
+#include "report/sensitivity/sensitivity_charts.hpp"
 #include "report/sensitivity/sensitivity_folder.hpp"
 
 namespace nsma::app {
@@ -25,13 +28,9 @@ int run_sensitivity(const Arguments& arguments) {
     const SensitivitySummary& summary = records.summary;
     progress.clear();
     write_sensitivity(arguments.out, scene, records);
-    fmt::print("{}results are in {}\n", sensitivity_text("sensitivity.txt", scene, records), arguments.out);
-    if (!summary.interrupted) {
-        draw_if_possible([&] {
-            for (const auto& picture : draw_sensitivity(arguments.out, scene, records))
-                fmt::print("chart    {}\n", picture.string());
-        });
-    }
+    fmt::print("{}\n{}results are in {}\n", derived_text(scene), sensitivity_text("sensitivity.txt", scene, records),
+               arguments.out);
+    if (!summary.interrupted) draw_if_possible(sensitivity_charts(scene, records), arguments.out);
     if (summary.left > 0 && summary.left == summary.admissible) {
         say("no pattern of the scene is a contact motion; --all-kinds studies the other {}", summary.left);
     }

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "nsma/report/input_error.hpp"
-
 namespace nsma::app {
 
 /// To be called before any file is opened: a standard stream that the caller closed would else be the next file that is
@@ -18,17 +16,6 @@ void say_line(std::string_view text);
 template <class... Values>
 void say(fmt::format_string<Values...> format, Values&&... values) {
     say_line(fmt::format(format, std::forward<Values>(values)...));
-}
-
-/// Draws charts at the end of a study, whose tables are complete without them: no gnuplot is a line on stderr, no
-/// error.
-template <class Draw>
-void draw_if_possible(const Draw& draw) {
-    try {
-        draw();
-    } catch (const NoGnuplot& error) {
-        say("{}; the tables are complete without them", error.what());
-    }
 }
 
 /// The exit code where standard output cannot be written, with its message. A reader that has enough, as head, is no

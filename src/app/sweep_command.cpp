@@ -7,6 +7,7 @@
 
 #include "command.hpp"
 #include "crew.hpp"
+#include "draw.hpp"
 #include "progress.hpp"
 #include "standard_streams.hpp"
 
@@ -22,15 +23,6 @@
 
 namespace nsma::app {
 namespace {
-
-void list(const DrawnCharts& charts, bool pictures) {
-    for (const auto& picture : charts.pictures) {
-        if (pictures) fmt::print("chart    {}\n", picture.string());
-    }
-    for (const auto& line : charts.skipped) say("{}", line);
-}
-
-void draw(const std::string& folder, bool pictures = true) { list(draw_sweep(folder), pictures); }
 
 // What decides an answer besides scene and software.
 std::string options_text(const OrbitSolverOptions& options, bool all_kinds) {
@@ -157,7 +149,7 @@ int run_sweep(const Arguments& arguments) {
     if (span && summary.levels > 0 && summary.solved == 0)
         fmt::print("no level was solved: the orbits of these patterns have {}\n", energies_text(*span, scene.bar));
     if (summary.interrupted) return exit_interrupted;
-    draw_if_possible([&] { draw(arguments.out); });
+    draw_if_possible(sweep_charts(read_sweep_folder(arguments.out)), arguments.out);
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
     if (summary.left > 0 && summary.left == summary.admissible) {
         std::fflush(stdout);
@@ -165,29 +157,6 @@ int run_sweep(const Arguments& arguments) {
     }
     const bool found = summary.levels > 0 ? summary.solved > 0 : summary.admissible > summary.left;
     return found ? exit_done : exit_inadmissible;
-}
-
-int run_export(const Arguments& arguments) {
-    expect_sweep_folder(arguments.input);
-    const FolderLock lock(arguments.input);
-    const SweepStore store(arguments.input);
-    fmt::print("{}\n", export_sweep(store, arguments.input, arguments.distinct).line);
-    if (arguments.curves) export_curves(store, arguments.input);
-    return exit_done;
-}
-
-int run_plot(const Arguments& arguments) {
-    expect_sweep_folder(arguments.input);
-    const FolderLock lock(arguments.input);
-    if (arguments.free_steps > 0) {
-        const StoredSweep sweep = read_sweep_folder(arguments.input);
-        const std::optional<double> level = arguments.level(sweep.scene);
-        list(draw_orbit(sweep, arguments.input, arguments.free_steps, arguments.contact_steps, level),
-             !arguments.quiet);
-    } else {
-        draw(arguments.input, !arguments.quiet);
-    }
-    return exit_done;
 }
 
 }  // namespace nsma::app

@@ -35,7 +35,8 @@ std::string derived_text(const Scene& scene) {
         text += fmt::format(", E_g = {}, d/L = {:.3g}", si_text(bar.energy_unit(), "J"), bar.gap / bar.length);
     if (const auto* mode = std::get_if<ModeSelection>(&scene.patterns)) {
         const auto patterns = mode_patterns(mode->mode, scene.mesh.cells, bar.gap_sign());
-        text += fmt::format("; mode {} has {} frequencies on {} cells", mode->mode, patterns.size(), scene.mesh.cells);
+        text += fmt::format("; mode {} has {} {} on {} cells", mode->mode, patterns.size(),
+                            patterns.size() == 1 ? "frequency" : "frequencies", scene.mesh.cells);
         int cells = scene.mesh.cells;
         while (patterns.empty() && cells < most_cells_tried &&
                mode_patterns(mode->mode, ++cells, bar.gap_sign()).empty()) {

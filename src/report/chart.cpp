@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "one_line.hpp"
 
@@ -11,17 +12,23 @@ namespace nsma {
 namespace {
 
 // What all charts have in common; names of scenes may hold what gnuplot would take for mark-up.
-constexpr const char* script_head = R"(# Drawn by nsma; draw again with: gnuplot {0}.gp
+constexpr const char* script_head = R"(# Drawn by nsma; draw again with: gnuplot {name}.gp
 set encoding utf8
-do for [format in "svg png"] {{
+do for [format in "{formats}"] {{
 if (format eq "svg") {{
-    set terminal svg size 1000,{1} font 'sans-serif,14' linewidth 1 enhanced background rgb 'white'
-}} else {{
-    set terminal pngcairo size 1600,{2} font 'sans-serif,14' fontscale 1.5 linewidth 1.6 pointscale 1.6 enhanced
+    set terminal svg size {svg} font 'sans-serif,14' fontscale {s} linewidth {s} enhanced background rgb 'white'
+    mark = 0.65*{s}
 }}
-set output '{0}.'.format
+if (format eq "png") {{
+    set terminal pngcairo size {png} font 'sans-serif,14' fontscale {p} linewidth {p} pointscale {p} enhanced
+    mark = 1.0
+}}
+if (format eq "pdf") {{
+    set terminal pdfcairo size {pdf} font 'sans-serif,14' fontscale {d} linewidth {d} pointscale {d} enhanced
+    mark = 1.0
+}}
+set output '{name}.'.format
 reset
-mark = format eq "svg" ? 0.65 : 1.0
 set border 3 linecolor rgb '#333333'
 set xtics out nomirror
 set ytics out nomirror
@@ -109,8 +116,21 @@ double round_below(double limit) {
     return power;
 }
 
-std::string gnuplot_script(const Chart& chart) {
-    std::string text = fmt::format(fmt::runtime(script_head), chart.name, chart.height, chart.height * 8 / 5);
+std::string gnuplot_script(const Chart& chart, const Drawing& drawing) {
+    constexpr double drawn_width = 1000;  // what sizes of letters, lines and marks are meant for
+    constexpr int usual_png = 1600;
+    constexpr double points_an_inch = 72;
+    const auto scale = [&](int usual) { return drawing.width.value_or(usual) / drawn_width; };
+    const auto size = [&](double factor, double unit, const char* word) {
+        const double height = drawing.height ? *drawing.height : std::round(chart.height * factor);
+        return fmt::format("{0}{2},{1}{2}", factor * drawn_width / unit, height / unit, word);
+    };
+    const double svg = scale(static_cast<int>(drawn_width));
+    const double png = scale(usual_png);
+    std::string text = fmt::format(
+        fmt::runtime(script_head), fmt::arg("name", chart.name), fmt::arg("formats", fmt::join(drawing.formats, " ")),
+        fmt::arg("svg", size(svg, 1, "")), fmt::arg("s", svg), fmt::arg("png", size(png, 1, "")), fmt::arg("p", png),
+        fmt::arg("pdf", size(svg, points_an_inch, "in")), fmt::arg("d", svg));
     text += chart.settings;
     const bool several = chart.panels.size() > 1 || !chart.title.empty();
     if (several) text += "set multiplot";

@@ -48,7 +48,7 @@ struct Chart {
     std::string settings = {};  ///< gnuplot commands ahead of all panels
     std::string title = {};     ///< above all panels
     std::vector<Panel> panels = {};
-    int height = 625;  ///< of the SVG, for a width of 1000; the PNG is 1.6 times that
+    int height = 625;  ///< for a width of 1000
     int blocks = 0;    ///< of rows in the data
 
     /// Adds a block of rows to the data; returns it as the source of a curve, without the columns. A block without rows
@@ -101,16 +101,22 @@ template <typename Records, typename Value>
 /// The largest of 1, 2 and 5 times a power of ten that does not exceed `limit` > 0.
 [[nodiscard]] double round_below(double limit);
 
-/// Writes NAME.dat and NAME.gp into `folder` (made if missing) and runs gnuplot there, which
-/// leaves NAME.svg and NAME.png; `gnuplot NAME.gp` in that folder draws it again. Throws
-/// InputError (one line) when the folder cannot be written or gnuplot is missing or fails.
-void draw_chart(const Chart& chart, const std::filesystem::path& folder);
+/// Formats and size of the pictures.
+struct Drawing {
+    std::vector<std::string> formats{"svg", "png"};  ///< of picture_formats
+    std::optional<int> width = {};                   ///< pixels, of a PDF points; absent: 1000, of a PNG 1600
+    std::optional<int> height = {};                  ///< absent: in the chart's own proportion
+};
+inline constexpr std::array<const char*, 3> picture_formats{"svg", "png", "pdf"};
 
-/// The gnuplot script of that chart.
-[[nodiscard]] std::string gnuplot_script(const Chart& chart);
+/// The gnuplot script that draws a chart.
+[[nodiscard]] std::string gnuplot_script(const Chart& chart, const Drawing& drawing = {});
 
-/// Draws all; returns the pictures, an SVG and a PNG of each.
+/// Writes NAME.dat and NAME.gp of every chart into `folder` (made if missing), then runs gnuplot on each, which leaves
+/// NAME.svg and so on; `gnuplot NAME.gp` in that folder draws it again. Returns the pictures. Throws InputError (one
+/// line) when the folder cannot be written or gnuplot fails, NoGnuplot when there is none.
 [[nodiscard]] std::vector<std::filesystem::path> draw_charts(const std::vector<Chart>& charts,
-                                                             const std::filesystem::path& folder);
+                                                             const std::filesystem::path& folder,
+                                                             const Drawing& drawing = {});
 
 }  // namespace nsma

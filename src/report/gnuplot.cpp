@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -25,8 +26,9 @@ bool whole(const fs::path& picture) {
     constexpr int tail = 16;
     file.seekg(-tail, std::ios::end);
     std::string end(tail, '\0');
-    return file.read(end.data(), tail) &&
-           end.find(picture.extension() == ".svg" ? "</svg>" : "IEND") != std::string::npos;
+    const std::string format = picture.extension();
+    const char* const mark = format == ".svg" ? "</svg>" : format == ".png" ? "IEND" : "%%EOF";
+    return file.read(end.data(), tail) && end.find(mark) != std::string::npos;
 }
 
 /// Runs `gnuplot NAME.gp` in the folder; returns whether it succeeded and what it said.
@@ -45,30 +47,30 @@ std::pair<bool, std::string> run_gnuplot(const std::string& script, const fs::pa
     return {WIFEXITED(status) && WEXITSTATUS(status) == 0, said};
 }
 
-}  // namespace
-
-void draw_chart(const Chart& chart, const fs::path& folder) {
-    make_folder(folder);
+// Has gnuplot run NAME.gp.
+std::vector<fs::path> draw_chart(const Chart& chart, const fs::path& folder, const Drawing& drawing) {
+    std::vector<fs::path> pictures;
+    for (const std::string& format : drawing.formats) pictures.push_back(folder / (chart.name + '.' + format));
     std::error_code code;
+    for (const fs::path& picture : pictures) fs::remove(picture, code);
     const std::string script = chart.name + ".gp";
-    write_whole(folder / (chart.name + ".dat"), chart.data);
-    write_whole(folder / script, gnuplot_script(chart));
-    for (const char* format : {".svg", ".png"}) fs::remove(folder / (chart.name + format), code);
-
     auto [drawn, said] = run_gnuplot(script, folder);
-    for (const char* format : {".svg", ".png"}) {
-        drawn = drawn && whole(folder / (chart.name + format));
-    }
-    if (drawn) return;
+    if (drawn && std::all_of(pictures.begin(), pictures.end(), whole)) return pictures;
     if (said.size() > 300) said = "..." + said.substr(said.size() - 300);
     fail(folder / script, "gnuplot failed: " + (said.empty() ? "no message" : said));
 }
 
-std::vector<fs::path> draw_charts(const std::vector<Chart>& charts, const fs::path& folder) {
+}  // namespace
+
+std::vector<fs::path> draw_charts(const std::vector<Chart>& charts, const fs::path& folder, const Drawing& drawing) {
+    make_folder(folder);
+    for (const Chart& chart : charts) {
+        write_whole(folder / (chart.name + ".dat"), chart.data);
+        write_whole(folder / (chart.name + ".gp"), gnuplot_script(chart, drawing));
+    }
     std::vector<fs::path> pictures;
     for (const Chart& chart : charts) {
-        draw_chart(chart, folder);
-        for (const char* format : {".svg", ".png"}) pictures.push_back(folder / (chart.name + format));
+        for (fs::path& picture : draw_chart(chart, folder, drawing)) pictures.push_back(std::move(picture));
     }
     return pictures;
 }

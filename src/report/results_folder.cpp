@@ -58,6 +58,14 @@ void make_folder(const fs::path& folder) {
     if (code) fail(folder, fmt::format("cannot be made: {}", code.message()));
 }
 
+void expect_folder(const fs::path& folder, const std::string& what) {
+    std::error_code code;
+    const fs::file_status status = fs::status(folder, code);
+    if (status.type() == fs::file_type::none) fail(folder, fmt::format("cannot be read: {}", code.message()));
+    if (!fs::is_directory(status))
+        fail(folder, fmt::format("expected {}, got {}", what, fs::exists(status) ? "a file" : "nothing"));
+}
+
 void prepare_results_folder(const fs::path& folder, const Scene& scene, std::span<const char* const> files) {
     if (scene.text.empty()) throw std::invalid_argument("scene.text: expected the scene file as read, got nothing");
     make_folder(folder);

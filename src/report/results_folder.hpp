@@ -43,6 +43,9 @@ void write_whole(const std::filesystem::path& file, std::string_view text);
 /// Makes a folder where there is none. Throws InputError where that cannot be done or a file has the name.
 void make_folder(const std::filesystem::path& folder);
 
+/// Throws InputError unless there is such a folder and it can be read; `what` it should be: "the folder of a sweep".
+void expect_folder(const std::filesystem::path& folder, const std::string& what);
+
 /// Bytes of the longest scene file.
 inline constexpr std::size_t max_scene_bytes = 16u << 20;
 

@@ -246,19 +246,63 @@ TEST_F(Surroundings, AnOrbitIsDrawnWhereItIsAskedFor) {
     EXPECT_EQ(one.exit_code, 0) << one.err;
     EXPECT_NE(one.out.find("energy        6 J = 12 E_g"), std::string::npos) << one.out;  // E_g = 1/2 J
     for (const char* name :
-         {"one/orbit.json", "one/curves.csv", "one/charts/orbit-motion.svg", "one/charts/orbit-stress.png"})
+         {"one/orbit.json", "one/curves.csv", "one/charts/orbit-motion.svg", "one/charts/orbit-fields.png"})
         EXPECT_TRUE(has(name)) << name;
     EXPECT_EQ(process::lines_of(contents(path("one/curves.csv"))).size(), 1U + 21U);  // n = 0..n_T
     ASSERT_EQ(run({"sweep", scene_, "--out", path("sweep"), "--quiet", "--cells", "6", "--gap", "1"}).exit_code, 0);
     EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "16,4,11"}).exit_code, 0);
     EXPECT_TRUE(has("sweep/charts/orbit-16-4-12-motion.png"));  // the level that is nearest
     EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "16,4"}).exit_code, 0);
-    EXPECT_TRUE(has("sweep/charts/orbit-16-4-stress.svg"));
+    EXPECT_TRUE(has("sweep/charts/orbit-16-4-fields.svg"));
     EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "17,4"}).exit_code, 2);
     for (const std::string word : {"16", "16,", "16,4,", "16,4,x", "-1,4", "16,4,12,3"})
         expect_refused({"plot", path("sweep"), "--orbit", word}, "--orbit: expected R,P");
     EXPECT_EQ(run({"export", path("sweep"), "--curves"}).exit_code, 0);
     EXPECT_TRUE(has("sweep/curves.csv"));
+}
+
+TEST_F(Surroundings, EveryFolderIsExportedAndPlotted) {
+    const auto has = [&](const std::string& name) { return fs::exists(path(name)) && fs::file_size(path(name)) > 100; };
+    const std::vector<std::string> one{"--free", "16", "--contact", "4", "--energy", "12"};
+    const auto with = [](Words words, const Words& more) {
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    ASSERT_EQ(run(with({"orbit", scene_, "--out", path("orbit")}, one)).exit_code, 0);
+    // A sweep and a sensitivity study of one scene share a folder.
+    ASSERT_EQ(run({"sweep", scene_, "--out", path("both"), "--quiet"}).exit_code, 0);
+    ASSERT_EQ(run(with({"sensitivity", scene_, "--out", path("both"), "--quiet"}, one)).exit_code, 0);
+    ASSERT_EQ(run({"accuracy", scene_, "--out", path("accuracy"), "--quick", "--quiet"}).exit_code, 0);
+    const std::vector<std::pair<std::string, Words>> folders{
+        {"orbit", {"curves.csv", "charts/orbit-motion"}},
+        {"both", {"levels.csv", "prices.csv", "charts/overview", "charts/binding"}},
+        {"accuracy", {"programs.csv", "winners.csv", "charts/accuracy-programs"}}};
+    for (const auto& [folder, files] : folders) {
+        std::map<std::string, std::string> before;
+        for (const std::string& file : files) {
+            if (!file.ends_with(".csv")) continue;
+            before[file] = contents(path(folder + "/" + file));
+            fs::remove(path(folder + "/" + file));
+        }
+        fs::remove_all(path(folder + "/charts"));
+        const Result exported = run({"export", path(folder)});
+        EXPECT_EQ(exported.exit_code, 0) << exported.err;
+        for (const auto& [file, text] : before) EXPECT_EQ(contents(path(folder + "/" + file)), text) << file;
+        const Result plotted = run({"plot", path(folder), "--format", "pdf,svg", "--size", "400x300"});
+        EXPECT_EQ(plotted.exit_code, 0) << plotted.err;
+        for (const std::string& file : files) {
+            if (file.ends_with(".csv")) continue;
+            EXPECT_TRUE(has(folder + "/" + file + ".pdf")) << file;
+            EXPECT_TRUE(has(folder + "/" + file + ".svg")) << file;
+            EXPECT_FALSE(has(folder + "/" + file + ".png")) << file;
+        }
+    }
+    expect_refused({"plot", path("orbit"), "--orbit", "16,4"}, "--orbit: expected the folder of a sweep");
+    expect_refused({"export", path("accuracy"), "--distinct"}, "--distinct: expected the folder of a sweep");
+    for (const std::string word : {"gif", "svg,gif", "", "svg,,pdf"})
+        expect_refused({"plot", path("both"), "--format", word}, "--format: expected svg, png, pdf");
+    for (const std::string word : {"10", "x", "400x", "x300", "400x300x2", "1e3", "-400", "99999"})
+        expect_refused({"plot", path("both"), "--size", word}, "--size: expected WIDTH");
 }
 
 TEST_F(Surroundings, WithoutGnuplotTheTablesAreComplete) {

@@ -55,7 +55,7 @@ TEST_F(Program, SensitivityStudyOfOnePatternAndOfTheScene) {
     EXPECT_EQ(all.exit_code, 0) << all.err;
     for (const char* file :
          {"optima.csv", "prices.csv", "orbit-derivatives.csv", "intervals.csv", "relaxations.csv", "ablation.csv",
-          "funnel.csv", "sensitivity.txt", "charts/funnel.png", "charts/counts.svg"}) {
+          "funnel.csv", "sensitivity.txt", "csv-metadata.json", "sensitivity.json", "charts/relaxation.png"}) {
         EXPECT_TRUE(fs::exists(fs::path(whole) / file)) << file;
     }
     const std::string before = contents(fs::path(whole) / "prices.csv");

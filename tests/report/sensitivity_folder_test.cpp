@@ -1,3 +1,4 @@
+#include "report/sensitivity/sensitivity_charts.hpp"
 #include "report/sensitivity/sensitivity_folder.hpp"
 
 #include <cmath>
@@ -51,7 +52,6 @@ TEST(SensitivityFolder, EveryFileHasOneNumberOfFields) {
         std::size_t fields = 0;
         int rows = 0;
         for (std::string line; std::getline(stream, line);) {
-            if (line.front() == '#') continue;
             bool quoted = false;
             std::size_t count = 1;
             for (const char letter : line) {
@@ -73,7 +73,6 @@ std::vector<std::map<std::string, std::string>> table_of(const std::string& text
     std::vector<std::string> names;
     std::istringstream stream(text);
     for (std::string line; std::getline(stream, line);) {
-        if (line.front() == '#') continue;
         std::vector<std::string> fields;
         std::istringstream words(line);
         for (std::string word; std::getline(words, word, ',');) fields.push_back(word);
@@ -151,12 +150,34 @@ TEST(SensitivityFolder, FunnelsEndAtTheSameNumber) {
     }
 }
 
+TEST(SensitivityFolder, DrawsNoChartWhoseCurvesCoincide) {
+    nsma::SensitivityRecords records;
+    const auto names = [&] {
+        std::string text;
+        for (const nsma::Chart& chart : nsma::sensitivity_charts(scene(), records)) text += chart.name + ' ';
+        return text;
+    };
+    nsma::AblationRecord admitted;
+    admitted.survives.fill(true);
+    nsma::CurveRecord point;
+    point.relaxed = "band";
+    records.ablations = {admitted, admitted};
+    records.curves = {point};
+    EXPECT_EQ(names(), "");
+    records.ablations.front().survives.back() = false;
+    EXPECT_EQ(names(), "funnel ");
+    point.relaxed = "penetration";
+    point.admissible = true;
+    records.curves.push_back(point);
+    EXPECT_EQ(names(), "counts funnel ");
+}
+
 TEST(SensitivityFolder, DrawsEveryChart) {
     const nsma::Scene two = scene();
     const auto found = study(two);
     const fs::path folder = fresh("sensitivity-charts");
-    const auto pictures = nsma::draw_sensitivity(folder, two, found);
-    EXPECT_EQ(pictures.size(), 8U);
+    const auto pictures = nsma::draw_charts(nsma::sensitivity_charts(two, found), folder);
+    EXPECT_EQ(pictures.size(), 6U);  // binding, relaxation, funnel; no relaxation changes what is admissible
     for (const auto& picture : pictures) EXPECT_GT(fs::file_size(picture), 1000U) << picture;
 }
 

@@ -23,7 +23,7 @@ std::string log_axes(const char* title_offset) {
 // The legend below all panels, with this many entries in a column.
 Panel legend_below(double top, int rows, std::vector<Curve> entries) {
     return legend({0.02, 0.98, 0.0, top},
-                  fmt::format("center center vertical maxrows {} samplen 2.5 width -2 font ',11'", rows),
+                  fmt::format("center center vertical maxrows {} samplen 2.5 width -4 font ',11'", rows),
                   std::move(entries));
 }
 
@@ -114,35 +114,40 @@ std::vector<Curve> program_curves(Chart& chart, const std::vector<ProgramRecord>
 }
 
 Chart program_chart(const std::vector<ProgramRecord>& records) {
+    const auto sizes = distinct(records, [](const ProgramRecord& record) { return record.size; });
+    const auto rows = (sizes.size() + 1) / 2;
+    const double below = 260;  // title and legend
+    const double row_height = 400;
     Chart chart{.name = "accuracy-programs",
                 .settings = log_axes("0,-0.7") + "set xlabel offset 0,0.5\n",
                 .title = "One orbit at a given energy: CPU time against error, by number m of amplitudes",
-                .height = 1060};
-    const auto sizes = distinct(records, [](const ProgramRecord& record) { return record.size; });
+                .height = static_cast<int>(below + row_height * static_cast<double>(rows))};
     std::vector<Curve> entries;
     double slowest = 1e-4;
     double fastest = 1e4;
+    double largest = 1e-15;
     for (const auto& record : records) {
+        largest = std::max(largest, drawn_error(record));
         slowest = std::max(slowest, record.seconds.high);
         fastest = std::min(fastest, std::max(record.seconds.low, 1e-7));
     }
     for (std::size_t k = 0; k < sizes.size(); ++k) {
         const double left = k % 2 == 0 ? 0.10 : 0.59;
-        const double top = k < 2 ? 0.93 : 0.55;
-        chart.panels.push_back({.frame = Frame{left, left + 0.39, top - 0.30, top},
+        const double top = 1 - (75 + row_height * static_cast<double>(k / 2)) / chart.height;
+        chart.panels.push_back({.frame = Frame{left, left + 0.39, top - 320.0 / chart.height, top},
                                 .title = fmt::format("m = {}", sizes[k]),
                                 .x = {.label = k + 2 < sizes.size() ? "" : "CPU time of a run (s)",
                                       .range = range(fastest / 2, slowest * 2)},
-                                .y = {.label = "largest error", .range = "2e-16:30"},
+                                .y = {.label = "largest error", .range = range(2e-16, 3 * largest)},
                                 .curves = program_curves(chart, records, sizes[k], slowest * 2)});
     }
     for (const auto& label : distinct(records, program_label)) {
         entries.push_back({"NaN", program_style(label, true), label});
     }
-    entries.push_back({"NaN", program_style("Ipopt", false), "hollow: not every answer certified"});
+    entries.push_back({"NaN", program_style("Ipopt", false), "hollow: not all certified"});
     entries.push_back({"NaN", certified_front, "Pareto front, certified"});
     entries.push_back({"NaN", any_front, "Pareto front, any"});
-    chart.panels.push_back(legend_below(0.16, 5, std::move(entries)));
+    chart.panels.push_back(legend_below(170.0 / chart.height, 5, std::move(entries)));
     return chart;
 }
 
@@ -178,6 +183,29 @@ Chart method_chart(const char* name, const std::string& title, const std::vector
     return chart;
 }
 
+// A logarithmic axis of whole numbers with room beside the least and the greatest; the ticks are at values that occur.
+template <typename Records, typename Value>
+Axis number_axis(const char* label, const Records& records, Value value) {
+    auto values = distinct(records, value);
+    std::sort(values.begin(), values.end());
+    std::string ticks;
+    double last = 0;
+    for (const int one : values) {
+        if (one < 1.8 * last) continue;
+        last = one;
+        ticks += fmt::format("{}'{}' {}", ticks.empty() ? "" : ", ", one, one);
+    }
+    return {label, range(values.front() / 1.6, values.back() * 1.6), "(" + ticks + ")"};
+}
+
+// An axis of errors from zero, drawn as 1e-17, to the largest; what is above 30 has left the frame.
+template <typename Records, typename Value>
+Axis error_axis(const char* label, const Records& records, Value value) {
+    double largest = 0;
+    for (const auto& record : records) largest = std::max(largest, drawn(value(record)));
+    return {label, range(3e-18, std::min(30.0, 10 * largest)), "add ('0' 1e-17)"};
+}
+
 template <typename Record>
 std::string march_label(const Record& record) {
     return record.setting.empty() ? record.method : record.method + ", " + record.setting;
@@ -187,14 +215,20 @@ Chart drift_chart(const std::vector<DriftRecord>& drifts) {
     const auto methods = series_of(drifts, march_label<DriftRecord>, [](const DriftRecord& record) {
         return fmt::format("{} {} {}\n", record.periods, drawn(record.energy_drift), drawn(record.periodicity_defect));
     });
-    const Axis periods{.label = "periods marched"};
+    const Axis periods =
+        number_axis("periods marched", drifts, [](const DriftRecord& record) { return record.periods; });
     return method_chart(
         "energy-drift",
         fmt::format("Drift of the first nonsmooth mode, N = {} (what leaves the frame is unstable)",
                     drifts.front().cells),
         methods,
-        {{.title = "energy", .x = periods, .y = {"|E - E_0|/E_0", "3e-18:30", "add ('0' 1e-17)"}},
-         {.title = "state", .x = periods, .y = {"periodicity defect (energy norm)", "3e-18:30", "add ('0' 1e-17)"}}},
+        {{.title = "energy",
+          .x = periods,
+          .y = error_axis("|E - E_0|/E_0", drifts, [](const DriftRecord& record) { return record.energy_drift; })},
+         {.title = "state",
+          .x = periods,
+          .y = error_axis("periodicity defect (energy norm)", drifts,
+                          [](const DriftRecord& record) { return record.periodicity_defect; })}},
         5);
 }
 
@@ -203,10 +237,13 @@ Chart march_chart(const std::vector<MarchRecord>& marches) {
         return fmt::format("{} {} {} {}\n", record.cells, drawn(record.tip_error),
                            std::max(record.contact_error, smallest_contact_error), record.seconds.median);
     });
-    const Axis cells{"cells or elements N", "3:500"};
+    const Axis cells =
+        number_axis("cells or elements N", marches, [](const MarchRecord& record) { return record.cells; });
     return method_chart(
         "error-and-cost", "One period of the first nonsmooth mode", methods,
-        {{.title = "tip displacement", .x = cells, .y = {"largest error / |d|", "3e-18:10", "add ('0' 1e-17)"}},
+        {{.title = "tip displacement",
+          .x = cells,
+          .y = error_axis("largest error / |d|", marches, [](const MarchRecord& record) { return record.tip_error; })},
          {.title = "duration of contact", .x = cells, .y = {"relative error", "5e-5:5", "add ('0' 1e-4)"}},
          {.title = "cost of a period", .x = cells, .y = {.label = "CPU time (s)"}}},
         5);
@@ -218,11 +255,12 @@ Chart kernel_chart(const std::vector<KernelRecord>& kernels) {
         [](const KernelRecord& record) {
             return fmt::format("{} {} {}\n", record.pattern.cells, drawn(record.error), record.seconds.median);
         });
-    const Axis cells{"cells N", "3:300"};
+    const Axis cells = number_axis("cells N", kernels, [](const KernelRecord& record) { return record.pattern.cells; });
     return method_chart("accuracy-kernels", "Kernel of S_T: error and cost", methods,
                         {{.title = "distance to the exact space",
                           .x = cells,
-                          .y = {"sine of the largest angle", "3e-18:10", "add ('0' 1e-17)"}},
+                          .y = error_axis("sine of the largest angle", kernels,
+                                          [](const KernelRecord& record) { return record.error; })},
                          {.title = "cost", .x = cells, .y = {.label = "CPU time (s)"}}},
                         2);
 }

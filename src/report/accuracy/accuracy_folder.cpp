@@ -11,7 +11,9 @@
 #include "numerics/linear_program.hpp"
 #include "numerics/solver.hpp"
 #include "report/csv.hpp"
+#include "report/csv_metadata.hpp"
 #include "report/one_line.hpp"
+#include "report/study_records.hpp"
 
 namespace nsma {
 namespace {
@@ -130,6 +132,13 @@ std::string causes_table(const std::vector<StabilityRecord>& cells) {
     return text;
 }
 
+// What follows from all records.
+void write_derived(const fs::path& folder, const std::string& title, const AccuracyResults& results) {
+    write_whole(folder / "causes.csv", causes_table(results.stability));
+    write_whole(folder / "winners.csv", winners_table(results.programs));
+    write_csv_metadata(folder, title);
+}
+
 std::string cpu_name() {
     std::ifstream stream("/proc/cpuinfo");
     for (std::string line; std::getline(stream, line);) {
@@ -160,7 +169,7 @@ std::string machine_text() {
 
 }  // namespace
 
-AccuracyFolder::AccuracyFolder(const fs::path& folder, const Scene& scene) : folder_(folder) {
+AccuracyFolder::AccuracyFolder(const fs::path& folder, const Scene& scene) : folder_(folder), title_(scene.title) {
     prepare_results_folder(folder, scene, accuracy_files);
     for (const AccuracyRecord& empty : std::initializer_list<AccuracyRecord>{
              ProgramRecord(), KernelRecord(), MarchRecord(), DriftRecord(), StabilityRecord(), ToleranceRecord()}) {
@@ -175,9 +184,25 @@ void AccuracyFolder::add(const AccuracyRecord& record) {
 
 void AccuracyFolder::finish() {
     for (PartFile& table : tables_) table.put_in_place();
-    write_whole(folder_ / "causes.csv", causes_table(results_.stability));
-    write_whole(folder_ / "winners.csv", winners_table(results_.programs));
+    write_derived(folder_, title_, results_);
     write_whole(folder_ / "machine.txt", machine_text() + "\n");
+    write_records(folder_, results_);
+}
+
+void write_accuracy(const fs::path& folder, const Scene& scene, const AccuracyResults& results) {
+    std::size_t place = 0;
+    const auto write = [&]<class Record>(const std::vector<Record>& records) {
+        std::string text = row(Record()).header + "\n";
+        for (const Record& record : records) text += row(record).fields + "\n";
+        write_whole(folder / accuracy_files.at(place++), text);
+    };
+    write(results.programs);
+    write(results.kernels);
+    write(results.marches);
+    write(results.drifts);
+    write(results.stability);
+    write(results.tolerances);
+    write_derived(folder, scene.title, results);
 }
 
 bool all_certified(const ProgramRecord& record) { return record.runs > 0 && record.certified == record.runs; }

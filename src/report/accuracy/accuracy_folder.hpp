@@ -33,9 +33,13 @@ public:
 
 private:
     std::filesystem::path folder_;
+    std::string title_;
     AccuracyResults results_;
     std::vector<PartFile> tables_;  ///< the first of accuracy_files, in the order of AccuracyRecord
 };
+
+/// Writes the tables of a study again from its records. Throws InputError.
+void write_accuracy(const std::filesystem::path& folder, const Scene& scene, const AccuracyResults& results);
 
 /// Every answer of the record was proved the best by the method itself.
 [[nodiscard]] bool all_certified(const ProgramRecord& record);

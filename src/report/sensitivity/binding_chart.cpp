@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "sensitivity_charts.hpp"
+#include "report/bar_text.hpp"
+#include "report/orbit_units.hpp"
 
 namespace nsma {
 namespace {
@@ -27,15 +29,13 @@ double highest_saving(const OptimumRecord& optimum) {
     return highest > least_saving ? highest : 0.0;
 }
 
-/// What each row of one condition saves, at the times of its steps; `offset` in steps.
-std::string saving_rows(const OptimumRecord& optimum, Parameter parameter, double offset) {
+/// What each row of one condition saves, at the times of its steps; `offset` in steps, which last `step_time`.
+std::string saving_rows(const OptimumRecord& optimum, Parameter parameter, double offset, double step_time) {
     std::string rows;
     for (const auto& price : optimum.prices) {
         if (price.parameter != parameter || saving(optimum, price) <= least_saving) continue;
-        for (const int step : price.steps) {
-            rows +=
-                fmt::format("{} {}\n", (step + offset) / optimum.orbit.kernel.pattern.cells, saving(optimum, price));
-        }
+        for (const int step : price.steps)
+            rows += fmt::format("{} {}\n", (step + offset) * step_time, saving(optimum, price));
     }
     return rows;
 }
@@ -55,9 +55,9 @@ std::string elasticity_text(const OptimumRecord& optimum, int gap_sign) {
 }
 
 /// Panel settings that shade and name the phase of contact below the wall.
-std::string contact_phase(const Pattern& pattern, double at_wall) {
-    const double from = static_cast<double>(pattern.free_steps) / pattern.cells;
-    const double to = pattern.period_ratio();
+std::string contact_phase(const Pattern& pattern, double step_time, double at_wall) {
+    const double from = pattern.free_steps * step_time;
+    const double to = pattern.period_steps() * step_time;
     const bool narrow = 8 * pattern.contact_steps < pattern.period_steps();  // for the word
     return fmt::format(
         "set object rectangle from first {}, graph 0 to first {}, first {} behind fillcolor rgb '#f2f2f2' fillstyle "
@@ -79,7 +79,10 @@ std::string text_of(const Pattern& pattern) {
 }
 
 std::string level_text(const char* separator, const OptimumRecord& optimum) {
-    return optimum.level ? fmt::format("{}E = {:.3g} E_g", separator, *optimum.level) : "";
+    const Bar& bar = optimum.orbit.bar;
+    if (!optimum.level) return {};
+    if (is_unit_bar(bar) && bar.gap != 0) return fmt::format("{}E = {:.3g} E_g", separator, *optimum.level);
+    return fmt::format("{}E = {}", separator, si_text(*optimum.level * bar.energy_unit(), "J"));
 }
 
 int binding_rows(const OptimumRecord& optimum) {
@@ -94,55 +97,60 @@ int binding_rows(const OptimumRecord& optimum) {
 
 Chart binding_chart(const Scene& scene, const OptimumRecord& optimum) {
     const Pattern& pattern = optimum.orbit.kernel.pattern;
-    const double cells = pattern.cells;
-    const double period = pattern.period_ratio();
-    const Eigen::VectorXd tip = tip_history(optimum.orbit.kernel, optimum.orbit.beta);
-    const double at_wall = scene.bar.gap_sign();
+    const Eigen::VectorXd tip_in_metres = tip_displacement(optimum.orbit);
+    const Units units = units_of(scene.bar, pattern.period_ratio(), tip_in_metres.cwiseAbs().maxCoeff());
+    const Eigen::VectorXd tip = tip_in_metres * units.length.factor;
+    const double step = optimum.orbit.mesh().time_step(scene.bar) * units.time.factor;
+    const double period = pattern.period_steps() * step;
+    const double at_wall = scene.bar.gap * units.length.factor;
     const double head = 0.14 * std::max(at_wall - tip.minCoeff(), 1e-9);
     const double highest = highest_saving(optimum);
     Chart chart{.name = "binding",
-                .data = fmt::format("# {}: time t/tau, x_1/u; then step time and saving [% of the objective per % of "
+                .data = fmt::format("# {}: time [{}], x_1 [{}]; then step time and saving [% of the objective per % of "
                                     "|d| or of Y S |d|/L]\n",
-                                    scene.title),
+                                    scene.title, units.time.unit, units.length.unit),
                 .settings = "set ylabel offset 0.5,0\nset title enhanced\n"};
     std::string motion, active;
     for (Eigen::Index n = 0; n < tip.size(); ++n)
-        motion += fmt::format("{} {}\n", static_cast<double>(n) / cells, tip[n]);
+        motion += fmt::format("{} {}\n", static_cast<double>(n) * step, tip[n]);
     for (const auto& price : optimum.prices) {
         if (price.parameter != Parameter::cond1_row || !price.active) continue;
-        for (const int step : price.steps) active += fmt::format("{} {}\n", step / cells, tip[step]);
+        for (const int n : price.steps) active += fmt::format("{} {}\n", n * step, tip[n]);
     }
-    const std::string flight = saving_rows(optimum, Parameter::cond1_row, 0.0);
-    const std::string contact = saving_rows(optimum, Parameter::cond3_row, 0.5);
-    const char* wall_line = "lines lw 1 lc rgb '#333333'";
     const char* active_mark = "points pt 7 ps 0.9*mark lc rgb '#d55e00'";
-    chart.panels = {
-        {.frame = Frame{0.12, 0.97, 0.55, 0.92},
-         .title = fmt::format("Where the wall decides: {}, {}{}", name(optimum.objective), text_of(pattern),
-                              level_text(", ", optimum)),
-         .x = {"", range(0.0, period), "format ''"},
-         .y = {"x_1/|d|", range(tip.minCoeff() - 0.5 * head, at_wall + head)},
-         .settings = wall(at_wall, at_wall + 0.5 * head, "wall") + contact_phase(pattern, at_wall),
-         .curves = {{fmt::format("{}", at_wall), wall_line},
-                    {chart.add("tip", motion) + " using 1:2", "lines lw 2 lc rgb '#000000'"},
-                    {chart.add("active", active) + " using 1:2", active_mark}}},
-        {.frame = Frame{0.12, 0.97, 0.24, 0.50},
-         .x = {"time t/τ, τ = L/c", range(0.0, period), "format '%g'"},
-         .y = {"saved [%]", range(0.0, highest > 0 ? 1.15 * highest : 1.0),
-               fmt::format("{}", round_below((highest > 0 ? highest : 1.0) / 3.0))},
-         .key = "at screen 0.545, screen 0.11 center top vertical maxrows 3 samplen 3",
-         .settings = fmt::format("set boxwidth {}\nset label {} at graph 0.01, graph 1.08 left noenhanced textcolor "
-                                 "rgb '#333333'\n",
-                                 0.7 / cells, gnuplot_text(elasticity_text(optimum, scene.bar.gap_sign()))),
-         .curves = {{chart.add("wall", flight) + " using 1:2",
-                     "boxes lc rgb '#d55e00' fillstyle solid 0.8 border lc rgb '#d55e00'",
-                     flight.empty() ? "COND1: no step of the flight has a price"
-                                    : "COND1: saved per penetration of 1 % of |d| at this step"},
-                    {chart.add("push", contact) + " using 1:2",
-                     "boxes lc rgb '#000000' fillstyle pattern 4 border lc rgb '#000000'",
-                     contact.empty() ? "COND3: no step of contact has a price"
-                                     : "COND3: saved per tension of 1 % of YS|d|/L at this step"},
-                    {"NaN", active_mark, "above: steps of the flight at the wall"}}}};
+    Panel motions{.frame = Frame{0.12, 0.97, 0.55, 0.92},
+                  .title = fmt::format("Where the wall decides: {}, {}{}", name(optimum.objective), text_of(pattern),
+                                       level_text(", ", optimum)),
+                  .x = {"", range(0.0, period), "format ''"},
+                  .y = {units.tip_label, range(tip.minCoeff() - 0.5 * head, at_wall + head)},
+                  .settings = wall(at_wall, at_wall + 0.5 * head, "wall") + contact_phase(pattern, step, at_wall),
+                  .curves = {{fmt::format("{}", at_wall), "lines lw 1 lc rgb '#333333'"},
+                             {chart.add("tip", motion) + " using 1:2", "lines lw 2 lc rgb '#000000'"}}};
+    Panel savings{.frame = Frame{0.12, 0.97, 0.24, 0.50},
+                  .x = {units.time_label, range(0.0, period), "format '%g'"},
+                  .y = {"saved [%]", range(0.0, highest > 0 ? 1.15 * highest : 1.0),
+                        fmt::format("{}", round_below((highest > 0 ? highest : 1.0) / 3.0))},
+                  .key = "at screen 0.545, screen 0.11 center top vertical maxrows 3 samplen 3",
+                  .settings = fmt::format("set boxwidth {}\nset label {} at graph 0.01, graph 1.08 left noenhanced "
+                                          "textcolor rgb '#333333'\n",
+                                          0.7 * step, gnuplot_text(elasticity_text(optimum, scene.bar.gap_sign())))};
+    const auto add_savings = [&](const char* block, const std::string& rows, const char* style, const char* title) {
+        if (!rows.empty()) savings.curves.push_back({chart.add(block, rows) + " using 1:2", style, title});
+    };
+    add_savings("wall", saving_rows(optimum, Parameter::cond1_row, 0.0, step),
+                "boxes lc rgb '#d55e00' fillstyle solid 0.8 border lc rgb '#d55e00'",
+                "COND1: saved per penetration of 1 % of |d| at this step");
+    add_savings("push", saving_rows(optimum, Parameter::cond3_row, 0.5, step),
+                "boxes lc rgb '#000000' fillstyle pattern 4 border lc rgb '#000000'",
+                "COND3: saved per tension of 1 % of YS|d|/L at this step");
+    if (savings.curves.empty()) {
+        savings.settings += "set label 'no step has a price' at graph 0.5, graph 0.5 center textcolor rgb '#555555'\n";
+    }
+    if (!active.empty()) {
+        motions.curves.push_back({chart.add("active", active) + " using 1:2", active_mark});
+        savings.curves.push_back({"NaN", active_mark, "above: steps of the flight at the wall"});
+    }
+    chart.panels = {std::move(motions), std::move(savings)};
     return chart;
 }
 

@@ -72,7 +72,7 @@ Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records, co
          .x = {"", amounts},
          .y = {"", "0:*"},
          .settings = fmt::format(
-             "set label {} at screen 0.5, screen 0.965 center\n",
+             "set label {} at screen 0.5, screen 0.975 center\n",
              gnuplot_text("Allowing penetration, a band of contact, tension: " + text_of(interval.pattern)))},
         {.frame = Frame{0.59, 0.98, 0.58, 0.88},
          .title = "greatest energy E_{max}/E_g",
@@ -84,13 +84,17 @@ Chart relaxation_chart(const Scene& scene, const SensitivityRecords& records, co
          .x = {amount_label, amounts},
          .y = {"", "0:1.05"}},
         legend({0.59, 0.98, 0.13, 0.43}, "at screen 0.58, screen 0.38 left top vertical maxrows 7 samplen 4",
-               {{"NaN", tangent_style, "tangents at zero, from the multipliers"}})};
+               {{"NaN", tangent_style, "tangents at zero (multipliers)"}})};
+    if (optimum == nullptr) {  // no objective to show
+        chart.panels.erase(chart.panels.begin() + 2);
+        chart.panels.front().x.label = amount_label;
+    }
     // Pairs below, so that the single conditions and their tangents are seen.
     for (const std::size_t i : {3U, 4U, 5U, 0U, 1U, 2U}) {
         const RelaxationCurve& relaxation = relaxations.at(i);
         const std::string block =
             chart.add(relaxation.name, relaxation_rows(records.curves, relaxation, interval, optimum));
-        for (std::size_t panel = 0; panel < 3; ++panel) {
+        for (std::size_t panel = 0; panel + 1 < chart.panels.size(); ++panel) {
             auto& curves = chart.panels[panel].curves;
             curves.push_back({fmt::format("{} using 1:{}", block, 2 + panel),
                               marked_line(curve_styles.at(i), relaxation.mark_size())});
@@ -174,8 +178,25 @@ Chart funnel_chart(const Scene& scene, const SensitivityRecords& records) {
     return chart;
 }
 
-std::vector<std::filesystem::path> draw_sensitivity(const std::filesystem::path& folder, const Scene& scene,
-                                                    const SensitivityRecords& records) {
+namespace {
+
+// Else all curves of the counts are one level line.
+bool counts_differ(const std::vector<CurveRecord>& curves) {
+    std::map<std::pair<std::string, double>, int> counts;
+    for (const CurveRecord& point : curves) counts[{point.relaxed, point.amount}] += point.admissible ? 1 : 0;
+    return std::any_of(counts.begin(), counts.end(),
+                       [&](const auto& entry) { return entry.second != counts.begin()->second; });
+}
+
+// Else all bars of the funnel are one.
+bool conditions_refuse(const std::vector<AblationRecord>& records) {
+    return std::any_of(records.begin(), records.end(),
+                       [](const AblationRecord& record) { return record.survives.front() && !record.survives.back(); });
+}
+
+}  // namespace
+
+std::vector<Chart> sensitivity_charts(const Scene& scene, const SensitivityRecords& records) {
     std::vector<Chart> charts;
     // The optimum that most rows hold; at the level of its relaxation curves where there are any.
     const auto on_curve = [&](const OptimumRecord& record) {
@@ -204,10 +225,10 @@ std::vector<std::filesystem::path> draw_sensitivity(const std::filesystem::path&
         charts.push_back(relaxation_chart(scene, records, *interval, at_level ? telling : nullptr));
     }
     if (records.ablations.size() > 1) {
-        if (!records.curves.empty()) charts.push_back(count_chart(scene, records));
-        charts.push_back(funnel_chart(scene, records));
+        if (counts_differ(records.curves)) charts.push_back(count_chart(scene, records));
+        if (conditions_refuse(records.ablations)) charts.push_back(funnel_chart(scene, records));
     }
-    return draw_charts(charts, folder / "charts");
+    return charts;
 }
 
 }  // namespace nsma

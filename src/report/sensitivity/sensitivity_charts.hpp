@@ -23,11 +23,14 @@ namespace nsma {
 /// Patterns left after each condition, in every order.
 [[nodiscard]] Chart funnel_chart(const Scene& scene, const SensitivityRecords& records);
 
+/// Those of these charts that the records can show.
+[[nodiscard]] std::vector<Chart> sensitivity_charts(const Scene& scene, const SensitivityRecords& records);
+
 /// Derivative of an objective with respect to a parameter that is raised, where it has a price.
 [[nodiscard]] std::optional<double> right_slope(const std::vector<Price>& prices, Parameter parameter);
 /// "N = 20, r = 60, p = 10"
 [[nodiscard]] std::string text_of(const Pattern& pattern);
-/// "E = 12.6 E_g" after the separator; empty without a level.
+/// "E = 12.6 E_g" after the separator, of a bar with units in joules; empty without a level.
 [[nodiscard]] std::string level_text(const char* separator, const OptimumRecord& optimum);
 
 }  // namespace nsma

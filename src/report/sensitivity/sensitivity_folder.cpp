@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 
 #include "report/csv.hpp"
-#include "report/one_line.hpp"
+#include "report/csv_metadata.hpp"
 #include "report/results_folder.hpp"
+#include "report/study_records.hpp"
 
 namespace nsma {
 namespace {
@@ -240,15 +241,13 @@ void open_sensitivity_folder(const fs::path& folder, const Scene& scene) {
 }
 
 std::string sensitivity_text(const std::string& file, const Scene& scene, const SensitivityRecords& records) {
-    const std::string head =
-        fmt::format("# nsma sensitivity: {}; columns and units: data/README.md of nsma\n", one_line(scene.title));
-    if (file == "optima.csv") return head + optima_text(scene, records);
-    if (file == "prices.csv") return head + prices_text(scene, records);
-    if (file == "orbit-derivatives.csv") return head + derivatives_text(scene, records);
-    if (file == "intervals.csv") return head + intervals_text(scene, records);
-    if (file == "relaxations.csv") return head + relaxations_text(scene, records);
-    if (file == "ablation.csv") return head + ablation_text(scene, records);
-    if (file == "funnel.csv") return head + funnel_text(records);
+    if (file == "optima.csv") return optima_text(scene, records);
+    if (file == "prices.csv") return prices_text(scene, records);
+    if (file == "orbit-derivatives.csv") return derivatives_text(scene, records);
+    if (file == "intervals.csv") return intervals_text(scene, records);
+    if (file == "relaxations.csv") return relaxations_text(scene, records);
+    if (file == "ablation.csv") return ablation_text(scene, records);
+    if (file == "funnel.csv") return funnel_text(records);
     if (file == "sensitivity.txt") return summary_text(records.summary);
     throw std::invalid_argument("file: expected a name of sensitivity_files, got " + file);
 }
@@ -257,6 +256,8 @@ void write_sensitivity(const fs::path& folder, const Scene& scene, const Sensiti
     for (const char* file : sensitivity_files) {
         write_whole(folder / file, sensitivity_text(file, scene, records));
     }
+    write_csv_metadata(folder, scene.title);
+    write_records(folder, scene, records);
 }
 
 }  // namespace nsma

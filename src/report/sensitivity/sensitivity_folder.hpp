@@ -26,7 +26,8 @@ struct Funnel {
 /// made or written or holds another scene's results.
 void open_sensitivity_folder(const std::filesystem::path& folder, const Scene& scene);
 
-/// Writes the files; each appears under its name only when it is complete. Throws InputError.
+/// Writes the files, their description and the records; each appears under its name only when it is complete. Throws
+/// InputError.
 void write_sensitivity(const std::filesystem::path& folder, const Scene& scene, const SensitivityRecords& records);
 
 /// The text of each file; `file` is one of sensitivity_files.
@@ -38,10 +39,5 @@ void write_sensitivity(const std::filesystem::path& folder, const Scene& scene, 
 /// Relative change of the value per relative change of gap or energy; of a parameter that is
 /// zero, per |d| or per Y S |d|/L.
 [[nodiscard]] double elasticity(double derivative, Parameter parameter, double value, int gap_sign, double level);
-
-/// Draws the charts that the records can show into folder/charts; returns the SVG and PNG files.
-[[nodiscard]] std::vector<std::filesystem::path> draw_sensitivity(const std::filesystem::path& folder,
-                                                                  const Scene& scene,
-                                                                  const SensitivityRecords& records);
 
 }  // namespace nsma

@@ -1,11 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
 
-#include "sweep_charts.hpp"
+#include "orbit_panels.hpp"
 #include "nsma/orbit/backbone.hpp"
 #include "report/bar_text.hpp"
 
@@ -98,7 +99,7 @@ double grazing_energy(int n) { return std::pow(n * std::numbers::pi, 2) / 8.0; }
 /// The chart, drawn from the bottom to the top.
 struct Diagram {
     Axes axes;
-    Chart chart;
+    Chart& chart;
     Panel panel;
 
     void draw(const char* block, const std::string& rows, const char* columns, const char* style, const char* title) {
@@ -135,9 +136,9 @@ void add_physical_axes(Diagram& diagram, const Bar& bar) {
     const ScaledUnit hertz = scaled_unit(linear * diagram.axes.frequency.hi, "Hz");
     const double hertz_each = linear * hertz.factor;
     diagram.panel.settings +=
-        fmt::format("set y2range [{}]\nset y2tics out\nset y2label 'frequency ({})' offset 0.5,0\n",
+        fmt::format("set y2range [{}]\nset y2tics out\nset y2label 'frequency ({})' offset -0.5,0\n",
                     range(diagram.axes.frequency.lo * hertz_each, diagram.axes.frequency.hi * hertz_each), hertz.unit);
-    diagram.panel.frame->right = 0.88;
+    diagram.panel.frame->right -= 0.075;
     if (bar.gap == 0) return;
     const double joules = bar.energy_unit();
     const ScaledUnit unit = scaled_unit(joules * diagram.axes.energy.hi, "J");
@@ -145,8 +146,8 @@ void add_physical_axes(Diagram& diagram, const Bar& bar) {
     diagram.panel.settings += fmt::format(
         "set logscale x2\nset x2range [{}]\nset x2tics out format '%g'\nset x2label 'energy E ({})' offset 0,-0.5\n",
         range(diagram.axes.energy.lo * joules_each, diagram.axes.energy.hi * joules_each), unit.unit);
-    diagram.panel.frame->top = 0.83;
-    diagram.chart.settings += "set border 15\nset title offset 0,0.3\n";
+    diagram.panel.frame->top -= 0.09;
+    diagram.panel.settings += "set border 15\nset title offset 0,0.3\n";
 }
 
 void draw_modes(Diagram& diagram, int gap_sign) {
@@ -219,35 +220,71 @@ void draw_records(Diagram& diagram, const StoredSweep& sweep) {
                  "solvers differ");
 }
 
-}  // namespace
+void draw_choice(Diagram& diagram, const OrbitChoice& choice) {
+    std::string marks;
+    for (std::size_t i = 0; i < choice.orbits.size(); ++i) {
+        const StoredOrbit& stored = *choice.orbits[i];
+        const double frequency = stored.orbit.kernel.pattern.frequency_ratio();
+        marks += point(stored.energy, frequency);
+        diagram.panel.settings += fmt::format("set label '{}' at first {},{} left offset 0.9,-0.7 front\n", roman(i),
+                                              stored.energy, frequency);
+    }
+    diagram.draw("orbits-drawn", marks, "1:2", "points pt 6 ps 2*mark lw 2 lc rgb '#000000'", "orbit shown");
+}
 
-Chart frequency_energy_chart(const StoredSweep& sweep) {
+// The whole diagram in a frame, its blocks added to the chart; the legend has `columns` and its top at `key`.
+Panel diagram_panel(Chart& chart, const StoredSweep& sweep, const OrbitChoice& choice, const Frame& frame,
+                    std::array<double, 2> key, int columns) {
     const Axes axes = axes_of(sweep);
-    const bool closed = sweep.scene.bar.gap_sign() == 0;
+    const int gap_sign = sweep.scene.bar.gap_sign();
     const bool few_decades = axes.energy.hi < 1e5 && axes.energy.lo > 1e-4;
-    Diagram diagram{
-        axes,
-        {.name = "frequency-energy",
-         .data = fmt::format("# {}: energy {}, frequency omega/omega_1, for intervals also their length\n",
-                             sweep.scene.title, closed ? "[J]" : "E/E_g, E_g = Y S gap^2 / (2 length)"),
-         .settings = fmt::format("set logscale x\nset format x '{}'\nset mxtics 10\nset border 11\n",
-                                 few_decades ? "%g" : "10^{%L}")},
-        {.frame = Frame{0.12, 0.93, 0.27, 0.92},
-         .title = sweep.scene.title,
-         .x = {closed ? "energy E (J)" : "energy E/E_g,  E_g = Y S d^2 / (2L)", range(axes.energy.lo, axes.energy.hi)},
-         .y = {"frequency ω/ω_1", range(axes.frequency.lo, axes.frequency.hi)},
-         .key = "at screen 0.525, screen 0.14 center top vertical maxrows 3 samplen 3 width 1"}};
-    draw_linear_modes(diagram, sweep.scene.bar.gap_sign());
-    draw_modes(diagram, sweep.scene.bar.gap_sign());
+    Diagram diagram{axes,
+                    chart,
+                    {.frame = frame,
+                     .x = {gap_sign == 0 ? "energy E (J)" : "energy E/E_g,  E_g = Y S d^2 / (2L)",
+                           range(axes.energy.lo, axes.energy.hi)},
+                     .y = {"frequency ω/ω_1", range(axes.frequency.lo, axes.frequency.hi)},
+                     .settings = fmt::format("set logscale x\nset format x '{}'\nset mxtics 10\nset border 11\n",
+                                             few_decades ? "%g" : "10^{%L}")}};
+    draw_linear_modes(diagram, gap_sign);
+    draw_modes(diagram, gap_sign);
     draw_records(diagram, sweep);
+    draw_choice(diagram, choice);
     add_physical_axes(diagram, sweep.scene.bar);
     const auto entries = std::count_if(diagram.panel.curves.begin(), diagram.panel.curves.end(),
                                        [](const Curve& curve) { return !curve.title.empty(); });
+    diagram.panel.key =
+        fmt::format("at screen {}, screen {} center top vertical maxrows {} samplen 3 width 1 font ',12'", key[0],
+                    key[1], std::max<std::ptrdiff_t>(3, (entries + columns - 1) / columns));
+    return diagram.panel;
+}
+
+std::string data_head(const Scene& scene) {
+    return fmt::format("# {}: energy {}, frequency omega/omega_1, for intervals also their length\n", scene.title,
+                       scene.bar.gap_sign() == 0 ? "[J]" : "E/E_g, E_g = Y S gap^2 / (2 length)");
+}
+
+}  // namespace
+
+Chart frequency_energy_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
+    Chart chart{.name = "frequency-energy", .data = data_head(sweep.scene)};
     // Three columns at most: a fourth would leave the picture.
-    diagram.panel.key = fmt::format("at screen 0.525, screen 0.145 center top vertical maxrows {} samplen 3 width 1",
-                                    std::max<std::ptrdiff_t>(3, (entries + 2) / 3));
-    diagram.chart.panels = {diagram.panel};
-    return diagram.chart;
+    Panel panel = diagram_panel(chart, sweep, choice, {0.12, 0.93, 0.28, 0.92}, {0.525, 0.15}, 3);
+    panel.title = sweep.scene.title;
+    chart.panels = {std::move(panel)};
+    return chart;
+}
+
+Chart overview_chart(const StoredSweep& sweep, const OrbitChoice& choice) {
+    Chart chart{
+        .name = "overview",
+        .data = fmt::format("# Tip displacement: time, value, value where a marker stands\n{}", data_head(sweep.scene)),
+        .title = sweep.scene.title,
+        .height = 520};
+    Panel tips = tip_panel(chart, sweep.scene, choice, {0.11, 0.465, 0.37, 0.88});
+    Panel diagram = diagram_panel(chart, sweep, choice, {0.585, 0.975, 0.37, 0.88}, {0.78, 0.215}, 2);
+    chart.panels = {std::move(tips), std::move(diagram)};
+    return chart;
 }
 
 }  // namespace nsma

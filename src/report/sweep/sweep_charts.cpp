@@ -1,6 +1,7 @@
 #include "sweep_charts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -14,12 +15,14 @@ namespace {
 
 using Candidates = std::vector<const StoredOrbit*>;
 
+constexpr double widest_ratio = 25;  // of energies: the least orbit would look flat beside a larger one
+
 /// Of orbits sorted by energy the ones nearest to the ends and the middle of their range on a
-/// logarithmic scale; above 25 times the least energy the others would look flat beside it.
+/// logarithmic scale.
 Candidates spread_by_energy(const Candidates& sorted) {
     if (sorted.size() <= 3) return sorted;
     const double lo = sorted.front()->energy;
-    const double hi = std::min(sorted.back()->energy, 25.0 * lo);
+    const double hi = std::min(sorted.back()->energy, widest_ratio * lo);
     Candidates chosen;
     for (const double target : {lo, std::sqrt(lo * hi), hi}) {
         const auto nearest = std::min_element(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) {
@@ -32,6 +35,37 @@ Candidates spread_by_energy(const Candidates& sorted) {
 
 int period_steps(const StoredOrbit* stored) { return stored->orbit.kernel.pattern.period_steps(); }
 bool less_energy(const StoredOrbit* a, const StoredOrbit* b) { return a->energy < b->energy; }
+double distance(double a, double b) { return std::abs(std::log(a / b)); }
+
+/// Of orbits sorted by energy two levels of one pattern, as far from each other as may be seen, and an orbit of least
+/// energy far from both; empty where there are none.
+Candidates two_levels_and_another(const Candidates& sorted) {
+    std::array<const StoredOrbit*, 2> levels{};
+    for (const StoredOrbit* lower : sorted) {
+        for (const StoredOrbit* upper : sorted) {
+            if (!lower->level || !upper->level || lower->orbit.kernel.pattern != upper->orbit.kernel.pattern) continue;
+            const double ratio = upper->energy / lower->energy;
+            if (ratio <= 1.0 || ratio > widest_ratio) continue;
+            if (levels[0] == nullptr || ratio > levels[1]->energy / levels[0]->energy) levels = {lower, upper};
+        }
+    }
+    if (levels[0] == nullptr) return {};
+    const StoredOrbit* other = nullptr;
+    const auto from_both = [&levels](const StoredOrbit* orbit) {
+        return std::min(distance(orbit->energy, levels[0]->energy), distance(orbit->energy, levels[1]->energy));
+    };
+    for (const StoredOrbit* orbit : sorted) {
+        if (orbit->level || orbit->orbit.kernel.pattern == levels[0]->orbit.kernel.pattern) continue;
+        const double lo = std::min(orbit->energy, levels[0]->energy);
+        const double hi = std::max(orbit->energy, levels[1]->energy);
+        if (hi > widest_ratio * lo) continue;
+        if (other == nullptr || from_both(orbit) > from_both(other)) other = orbit;
+    }
+    if (other == nullptr) return {};
+    Candidates chosen{levels[0], levels[1], other};
+    std::stable_sort(chosen.begin(), chosen.end(), less_energy);
+    return chosen;
+}
 
 }  // namespace
 
@@ -49,9 +83,10 @@ OrbitChoice choose_orbits(const StoredSweep& sweep) {
         of_mode.push_back(orbit);
         if (!orbit->level) least.push_back(orbit);
     }
+    const std::string what = "orbits of mode k = " + std::to_string(lowest_mode.value_or(0));
+    if (const auto chosen = two_levels_and_another(of_mode); !chosen.empty()) return {chosen, what};
     if (!of_mode.empty()) {
-        return {spread_by_energy(least.size() >= 3 ? least : of_mode),
-                "orbits of mode k = " + std::to_string(*lowest_mode)};
+        return {spread_by_energy(least.size() >= 3 ? least : of_mode), what};
     }
     // No mode at all: of each of the three lowest frequencies its least-energy orbit.
     std::stable_sort(all.begin(), all.end(),
@@ -63,38 +98,35 @@ OrbitChoice choose_orbits(const StoredSweep& sweep) {
     return {all, "orbits of the lowest frequencies"};
 }
 
-DrawnCharts draw_sweep(const std::filesystem::path& sweep_folder) {
-    const StoredSweep sweep = read_sweep_folder(sweep_folder);
+std::vector<Chart> sweep_charts(const StoredSweep& sweep) {
     const OrbitChoice choice = choose_orbits(sweep);
-    std::vector<Chart> charts{frequency_energy_chart(sweep)};
-    DrawnCharts drawn;
-    if (choice.orbits.empty()) {
-        drawn.skipped = {"orbits: no orbit is stored", "space-time: no orbit is stored"};
-    } else {
-        charts.push_back(orbit_chart(sweep.scene, choice));
-        charts.push_back(space_time_chart(sweep.scene, *choice.orbits[choice.orbits.size() / 2]));
-    }
-    drawn.pictures = draw_charts(charts, sweep_folder / "charts");
-    return drawn;
+    if (choice.orbits.empty()) return {frequency_energy_chart(sweep, choice)};
+    return {overview_chart(sweep, choice), frequency_energy_chart(sweep, choice),
+            orbit_chart(sweep.scene, choice, "orbits"),
+            space_time_chart(sweep.scene, *choice.orbits[choice.orbits.size() / 2], "space-time")};
 }
 
-DrawnCharts draw_orbit(const StoredSweep& sweep, const std::filesystem::path& sweep_folder, int free_steps,
-                       int contact_steps, std::optional<double> level) {
+std::vector<Chart> charts_of(const Scene& scene, const StoredOrbit& stored, const std::string& name) {
+    const OrbitChoice choice{{&stored}, stored.level ? "one orbit" : "the orbit of least energy"};
+    return {orbit_chart(scene, choice, name + "-motion"), space_time_chart(scene, stored, name + "-fields")};
+}
+
+std::vector<Chart> charts_of(const StoredSweep& sweep, const std::filesystem::path& folder, int free_steps,
+                             int contact_steps, std::optional<double> level) {
     const StoredOrbit* found = nullptr;
-    const auto distance = [&](const StoredOrbit& orbit) { return std::abs(std::log(*orbit.level / *level)); };
     for (const StoredOrbit& orbit : sweep.orbits) {
         const Pattern& pattern = orbit.orbit.kernel.pattern;
         if (pattern.free_steps != free_steps || pattern.contact_steps != contact_steps) continue;
         if (orbit.level.has_value() != level.has_value()) continue;
-        if (found == nullptr || (level && distance(orbit) < distance(*found))) found = &orbit;
+        if (found == nullptr || (level && distance(*orbit.level, *level) < distance(*found->level, *level)))
+            found = &orbit;
     }
     if (found == nullptr) {
-        fail(sweep_folder, fmt::format("expected an orbit with r = {}, p = {}{}, got none in this sweep", free_steps,
-                                       contact_steps, level ? " at a level" : ""));
+        fail(folder, fmt::format("expected an orbit with r = {}, p = {}{}, got none in this sweep", free_steps,
+                                 contact_steps, level ? " at a level" : ""));
     }
     const std::string energy = found->level ? fmt::format("-{:.6g}", *found->level) : std::string();
-    const std::string name = fmt::format("orbit-{}-{}{}", free_steps, contact_steps, energy);
-    return {draw_charts(charts_of(sweep.scene, *found, name), sweep_folder / "charts"), {}};
+    return charts_of(sweep.scene, *found, fmt::format("orbit-{}-{}{}", free_steps, contact_steps, energy));
 }
 
 }  // namespace nsma

@@ -80,6 +80,7 @@ void export_curves(const SweepStore& store, const fs::path& folder) {
             file.write(curves_csv_rows(*result.answer->orbit, result.answer->level));
     });
     file.put_in_place();
+    write_csv_metadata(folder, store.scene().title);
 }
 
 StoredSweep read_sweep_folder(const fs::path& folder) {

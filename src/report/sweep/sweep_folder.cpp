@@ -5,7 +5,6 @@
 
 #include "tables.hpp"
 #include "nsma/report/orbit_json.hpp"
-#include "report/one_line.hpp"
 
 namespace nsma {
 namespace {
@@ -45,13 +44,6 @@ std::string summary_json(const SweepSummary& summary) {
     return json.dump(2);
 }
 
-constexpr const char* csv_notes =
-    "# SI units: gap [m], period_s [s], *_joule [J]. energy_ratio* is E/E_g with E_g = Y S gap^2 / "
-    "(2 length),\n"
-    "# empty for a closed gap; frequency_ratio is omega/omega_1; *_steps count time steps "
-    "length/(c cells).\n"
-    "# An empty field has no value. All columns: data/README.md of nsma.";
-
 }  // namespace
 
 fs::path prepare_sweep_folder(const fs::path& folder, const Scene& scene) {
@@ -60,12 +52,8 @@ fs::path prepare_sweep_folder(const fs::path& folder, const Scene& scene) {
 }
 
 void expect_sweep_folder(const fs::path& folder) {
+    expect_folder(folder, "the folder of a sweep");
     std::error_code code;
-    const fs::file_status status = fs::status(folder, code);
-    if (status.type() == fs::file_type::none) fail(folder, fmt::format("cannot be read: {}", code.message()));
-    if (!fs::is_directory(status)) {
-        fail(folder, fmt::format("expected the folder of a sweep, got {}", fs::exists(status) ? "a file" : "nothing"));
-    }
     for (const char* store : {store_name, store_part_name}) {
         if (fs::exists(folder / store, code)) return;
         if (code) fail(folder / store, fmt::format("cannot be read: {}", code.message()));
@@ -76,17 +64,14 @@ void expect_sweep_folder(const fs::path& folder) {
 SweepFolder::SweepFolder(const fs::path& folder, const Scene& scene)
     : folder_(prepare_sweep_folder(folder, scene)),
       bar_(scene.bar),
+      title_(scene.title),
       patterns_(folder_ / "patterns.csv"),
       levels_(folder_ / "levels.csv"),
       orbits_(folder_ / "orbits.jsonl"),
       timings_(folder_ / "timings.csv") {
-    const std::string title = "# nsma sweep: " + one_line(scene.title);
-    patterns_.write(fmt::format("{}: patterns\n{}\n{}\n", title, csv_notes, patterns_csv_header()));
-    levels_.write(
-        fmt::format("{}: energy levels\n{}\n# level is in units of E_g, in joules for a closed gap; "
-                    "empty in the row of a pattern's least-energy orbit.\n{}\n",
-                    title, csv_notes, levels_csv_header()));
-    timings_.write(fmt::format("{}: wall times [s]\n{}\n", title, timings_csv_header()));
+    patterns_.write(patterns_csv_header() + "\n");
+    levels_.write(levels_csv_header() + "\n");
+    timings_.write(timings_csv_header() + "\n");
 }
 
 void SweepFolder::pattern(const PatternRecord& record) {
@@ -109,6 +94,7 @@ void SweepFolder::finish(const SweepSummary& summary) {
     const std::array files{&patterns_, &levels_, &orbits_, &timings_, &text, &json};
     for (PartFile* file : files) file->close();
     for (PartFile* file : files) file->put_in_place();
+    write_csv_metadata(folder_, title_);
 }
 
 }  // namespace nsma

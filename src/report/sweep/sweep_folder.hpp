@@ -5,6 +5,7 @@
 
 #include "nsma/study/records.hpp"
 #include "nsma/study/scene.hpp"
+#include "report/csv_metadata.hpp"
 #include "report/results_folder.hpp"
 
 namespace nsma {
@@ -14,8 +15,8 @@ inline constexpr const char* store_name = "results.sqlite";
 inline constexpr const char* store_part_name = "results.sqlite.part";
 
 /// Files of a sweep in its folder, beside scene.toml; columns and units: data/README.md.
-inline constexpr std::array<const char*, 6> sweep_files{"patterns.csv", "levels.csv",  "orbits.jsonl",
-                                                        "timings.csv",  "summary.txt", "summary.json"};
+inline constexpr std::array<const char*, 7> sweep_files{"patterns.csv", "levels.csv",   "orbits.jsonl",   "timings.csv",
+                                                        "summary.txt",  "summary.json", csv_metadata_name};
 
 /// Makes the folder if missing and puts the scene in it. Throws InputError when that cannot be
 /// done or the folder holds another scene's results, std::invalid_argument unless scene.text is
@@ -38,6 +39,7 @@ public:
 private:
     std::filesystem::path folder_;
     Bar bar_;
+    std::string title_;
     PartFile patterns_, levels_, orbits_, timings_;
 };
 
