@@ -1,6 +1,7 @@
 # cmake -D tree=DIR -P check_includes.cmake: fails, with one line a fault, where the sources in DIR break the rules:
 #   a room includes itself and the rooms it knows, all to its left;
 #   a public header includes the standard library, Eigen, Boost.Multiprecision and public headers only;
+#   include/nsma/nsma.hpp, for users only, includes every public header;
 #   the headers of one solver or tool are included by one .cpp.
 cmake_policy(VERSION 3.25)
 
@@ -40,11 +41,14 @@ if(count EQUAL 0)
 endif()
 
 foreach(file IN LISTS files)
-  if(NOT file MATCHES "^(include/nsma|src)/([a-z]+)/" OR NOT CMAKE_MATCH_2 IN_LIST rooms)
+  if(file STREQUAL "include/nsma/nsma.hpp")
+    set(room app)  # knows every room
+  elseif(NOT file MATCHES "^(include/nsma|src)/([a-z]+)/" OR NOT CMAKE_MATCH_2 IN_LIST rooms)
     fault("${file}: in no room")
     continue()
+  else()
+    set(room ${CMAKE_MATCH_2})
   endif()
-  set(room ${CMAKE_MATCH_2})
   string(FIND ${file} "include/" at)
   if(at EQUAL 0)
     set(public TRUE)
@@ -63,6 +67,12 @@ foreach(file IN LISTS files)
       endif()
     endif()
 
+    if(file STREQUAL "include/nsma/nsma.hpp")
+      list(APPEND included_for_users ${header})
+    elseif(header STREQUAL "nsma/nsma.hpp")
+      fault("${file}: only users include ${header}")
+    endif()
+
     if(public AND NOT header MATCHES "^([a-z_0-9]+|Eigen/.+|boost/multiprecision/.+|nsma/.+)$")
       fault("${file}: a public header may not include ${header}")
     endif()
@@ -77,6 +87,12 @@ foreach(file IN LISTS files)
       endif()
     endforeach()
   endforeach()
+endforeach()
+
+foreach(file IN LISTS files)
+  if(file MATCHES "^include/(nsma/[a-z]+/.*)$" AND NOT CMAKE_MATCH_1 IN_LIST included_for_users)
+    fault("${file}: include/nsma/nsma.hpp does not include it")
+  endif()
 endforeach()
 
 foreach(tool IN LISTS tools)

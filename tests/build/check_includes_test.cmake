@@ -7,6 +7,10 @@ function(fresh_tree)
   file(REMOVE_RECURSE ${work})
   file(WRITE ${work}/include/nsma/wave/bar.hpp "#include <vector>\n#include <Eigen/Core>\n#include <boost/multiprecision/cpp_int.hpp>\n")
   file(WRITE ${work}/include/nsma/orbit/kernel.hpp "#include \"nsma/wave/bar.hpp\"\n")
+  # Among them headers that a case below adds.
+  foreach(header wave/bar orbit/kernel orbit/orbit report/store)
+    file(APPEND ${work}/include/nsma/nsma.hpp "#include \"nsma/${header}.hpp\"\n")
+  endforeach()
   file(WRITE ${work}/src/wave/marcher.cpp "// #include \"nsma/orbit/kernel.hpp\"\n#include \"nsma/wave/bar.hpp\"\n")
   file(WRITE ${work}/src/search/ipopt.cpp "#include <IpIpoptApplication.hpp>\n#include <IpTNLP.hpp>\n")
   file(WRITE ${work}/src/search/nlopt.cpp "#include <nlopt.hpp>\n#include \"nsma/orbit/kernel.hpp\"\n")
@@ -51,6 +55,11 @@ expect_fault(src/report/chart.cpp "#include \"app/progress.hpp\"")
 # A room nobody knows.
 expect_fault(src/utils/string.cpp "#include <string>")
 expect_fault(include/nsma/everything.hpp "#include \"nsma/wave/bar.hpp\"")
+
+# The header of every header.
+expect_fault(include/nsma/orbit/pattern.hpp "#include <vector>")
+expect_fault(include/nsma/orbit/orbit.hpp "#include \"nsma/nsma.hpp\"")
+expect_fault(src/app/words.cpp "#include <nsma/nsma.hpp>")
 
 # Solvers and tools in headers, and in a second source.
 expect_fault(src/search/solver.hpp "#include <IpTNLP.hpp>")

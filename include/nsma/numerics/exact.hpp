@@ -9,9 +9,9 @@
 
 namespace nsma {
 
-/// Exact numbers of the proofs. All data of a pattern are small integers, so every proof can be
-/// checked without rounding.
+/// Integer of any size: all data of a pattern are small integers, so every proof can be checked without rounding.
 using Integer = boost::multiprecision::cpp_int;
+/// Fraction of such integers in lowest terms.
 using Rational = boost::multiprecision::cpp_rational;
 
 /// Sparse vector: (index, value) with increasing index.

@@ -7,6 +7,7 @@ namespace nsma {
 /// Ends a computation that was asked to stop; no error.
 class Interrupted : public std::exception {
 public:
+    /// The word "interrupted".
     [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
 };
 
@@ -16,6 +17,7 @@ int request_stop(int signal) noexcept;
 
 /// The signal of request_stop(), or 0.
 [[nodiscard]] int stop_signal() noexcept;
+/// Whether a stop was requested.
 [[nodiscard]] inline bool stop_requested() noexcept { return stop_signal() != 0; }
 
 /// Throws Interrupted once a stop is requested. Stands in every loop that may take more than a second.

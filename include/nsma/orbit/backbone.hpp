@@ -18,9 +18,10 @@ namespace nsma {
 
 /// Range of T/tau of mode k for a gap of the given sign; lo == hi for a closed gap.
 struct PeriodInterval {
-    double lo = 0.0;
-    double hi = 0.0;
+    double lo = 0.0;  ///< [tau]
+    double hi = 0.0;  ///< [tau]
 };
+/// The periods at which mode k has orbits. Throws std::invalid_argument for k < 1 or a gap sign other than -1, 0, 1.
 [[nodiscard]] PeriodInterval backbone_period_interval(int mode, int gap_sign);
 
 /// Patterns of mode k on a mesh of N cells for a gap of the given sign (decided in integers,

@@ -18,16 +18,23 @@ namespace nsma {
 ///   COND3: eps_n beta_{class(n)} >= 0, n = r..n_T-1  (bounds: `bound_of`)
 ///   E/E_unit = energy_factor * |beta|^2, energy_factor = 4 N^2/g
 struct Conditions {
-    enum class Sign : std::uint8_t { free, nonnegative, nonpositive, zero };
+    /// Which values of one amplitude COND3 allows.
+    enum class Sign : std::uint8_t {
+        free,         ///< any: no contact step carries it
+        nonnegative,  ///< >= 0
+        nonpositive,  ///< <= 0
+        zero          ///< 0 alone: bounded from both sides
+    };
 
-    Kernel kernel;
+    Kernel kernel;               ///< of the pattern
     int gap_sign = 1;            ///< delta
-    std::vector<Sign> bound_of;  ///< COND3 per column; size m; `zero` on a sign conflict
+    std::vector<Sign> bound_of;  ///< COND3 per column; size m
 
-    [[nodiscard]] int dimension() const { return kernel.dimension(); }
-    [[nodiscard]] double energy_factor() const;  ///< 4 N^2/g
+    [[nodiscard]] int dimension() const { return kernel.dimension(); }  ///< m, the size of beta
+    [[nodiscard]] double energy_factor() const;                         ///< 4 N^2/g
 };
 
+/// Reads the signs of COND3 off the kernel, O(n_T). Throws std::invalid_argument on a gap sign other than -1, 0, 1.
 [[nodiscard]] Conditions conditions(const Kernel& kernel, int gap_sign);
 
 /// Row x_0 of the tip displacement over beta (size m, integers): COND2's only row.

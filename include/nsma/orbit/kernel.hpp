@@ -14,7 +14,7 @@ namespace nsma {
 /// whose signs close up carries one free amplitude: b_n = eps_n alpha_{class(n)}.
 /// Source: [1] Eq. (4)-(5), solved by cycles.
 struct Kernel {
-    Pattern pattern;
+    Pattern pattern;                ///< whose period n_T the waves have
     int classes = 0;                ///< g
     std::vector<std::int8_t> sign;  ///< eps_n in {+1, -1, 0}, n = 0..n_T-1
     std::vector<int> amplitude_of;  ///< class -> column of alpha, -1 for a dead class; size g

@@ -10,11 +10,11 @@ namespace nsma {
 /// One periodic motion: a bar, its kernel and the nondimensional amplitudes beta.
 /// Source: [1] Eq. (5).
 struct Orbit {
-    Bar bar;
-    Kernel kernel;
+    Bar bar;               ///< its gap sets the unit u of beta
+    Kernel kernel;         ///< of the pattern; m amplitudes
     Eigen::VectorXd beta;  ///< size m, nondimensional; alpha = beta u/dt
 
-    [[nodiscard]] Mesh mesh() const { return Mesh{kernel.pattern.cells}; }
+    [[nodiscard]] Mesh mesh() const { return Mesh{kernel.pattern.cells}; }  ///< that of the pattern
 };
 
 /// Throws std::invalid_argument unless the bar is valid and beta has size m and is finite.
@@ -34,6 +34,7 @@ struct Field {
     Eigen::MatrixXd stress;    ///< [Pa]
     Eigen::MatrixXd velocity;  ///< [m/s]
 };
+/// The field from the waves on their way, O(N n_T): sigma = -z (b_{n+N-i} + b_{n+N+i-1}), v their difference.
 [[nodiscard]] Field field(const Orbit& orbit);
 
 }  // namespace nsma

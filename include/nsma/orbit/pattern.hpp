@@ -16,6 +16,7 @@ struct Pattern {
     [[nodiscard]] double frequency_ratio() const;                                  ///< omega/omega_1 = 4N/n_T
     [[nodiscard]] double period_ratio() const;                                     ///< T/tau = n_T/N
 
+    /// The same N, r and p.
     bool operator==(const Pattern&) const = default;
 };
 
@@ -23,6 +24,7 @@ struct Pattern {
 /// and n_T <= max_period_steps.
 void validate(const Pattern& pattern);
 
+/// Largest n_T accepted by validate(), 10 million.
 inline constexpr int max_period_steps = 10'000'000;
 
 /// m = dim ker S_T in closed form, O(log N): with q = floor(r/g), s = r mod g,
@@ -32,11 +34,13 @@ inline constexpr int max_period_steps = 10'000'000;
 /// Every pattern with lo <= n_T <= hi in period steps and, if given, contact steps in
 /// [contact_lo, contact_hi], ordered by n_T then r; those of trivial kernel included.
 struct PatternRange {
-    int period_lo = 2;
-    int period_hi = 2;
-    int contact_lo = 1;
-    int contact_hi = max_period_steps;
+    int period_lo = 2;                  ///< least n_T
+    int period_hi = 2;                  ///< greatest n_T
+    int contact_lo = 1;                 ///< least p
+    int contact_hi = max_period_steps;  ///< greatest p
 };
+/// The patterns of a range on a mesh of N cells; empty where lo > hi. Throws std::invalid_argument unless
+/// 1 <= N <= max_cells and period_hi <= max_period_steps.
 [[nodiscard]] std::vector<Pattern> patterns_in(int cells, const PatternRange& range);
 
 }  // namespace nsma

@@ -15,6 +15,7 @@ enum class PatternKind : std::uint8_t {
     free,     ///< no orbit presses: a free vibration that at most grazes the wall
     stuck     ///< no orbit leaves the wall: the bar vibrates with its end held
 };
+/// Every kind, in the order of its values.
 inline constexpr std::array pattern_kinds{PatternKind::contact, PatternKind::free, PatternKind::stuck};
 [[nodiscard]] std::string_view name(PatternKind kind);  ///< "contact", "free", "stuck"
 

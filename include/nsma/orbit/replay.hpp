@@ -17,12 +17,12 @@ struct Violations {
     double cond3 = 0.0;
     double energy = 0.0;  ///< |E/E_unit - level| / level; 0 when no level is asked
 
-    [[nodiscard]] double worst() const;
+    [[nodiscard]] double worst() const;  ///< the largest of them
 };
 
 /// Verdict of the independent marcher on an orbit.
 struct Replay {
-    Violations violations;
+    Violations violations;     ///< of the labelled schedule, energy against the level asked
     MarchReport march;         ///< what the marcher saw, its own decisions
     bool same_labels = false;  ///< contact seen exactly in the labelled steps, silent ones aside
     bool accepted = false;     ///< worst violation, march defect <= tolerance and same_labels

@@ -16,13 +16,13 @@ enum class Finding : std::uint8_t {
     admissible      ///< some motion meets COND1-3
 };
 
+/// What the sieve says of one pattern.
 struct Sieved {
-    Finding finding = Finding::trivial;
-    int kernel_dimension = 0;  ///< m
-    /// Admissible, gap != 0: the interval of E/E_g, quotients of integers; else 0.
-    double energy_least = 0;
-    double energy_greatest = 0;
-    bool unbounded = false;  ///< admissible at a closed gap: a cone
+    Finding finding = Finding::trivial;  ///< what decided
+    int kernel_dimension = 0;            ///< m
+    double energy_least = 0;             ///< E_min/E_g, a quotient of integers; 0 unless admissible and gap != 0
+    double energy_greatest = 0;          ///< E_max/E_g, likewise
+    bool unbounded = false;              ///< admissible at a closed gap: a cone
 };
 
 /// Verdicts on COND1-3 without a linear program. The classes mod g = gcd(2N, n_T) all walk the

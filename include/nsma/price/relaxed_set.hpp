@@ -11,9 +11,10 @@ namespace nsma {
 /// One inequality of COND1 or COND3 over beta, as a parametric row. Steps of equal rows share
 /// one: they are relaxed together.
 struct ConditionRow {
+    /// No penetration in flight (COND1), no tension in contact (COND3).
     enum class Condition { cond1, cond3 };
-    Condition condition = Condition::cond1;
-    std::vector<int> steps;  ///< n of every step with this row, increasing
+    Condition condition = Condition::cond1;  ///< which it is
+    std::vector<int> steps;                  ///< n of every step with this row, increasing
 };
 
 /// Change of the right-hand sides, nondimensional: lengths in u, forces in Y S u/L, energies in
@@ -40,16 +41,19 @@ struct Relaxation {
 /// wall COND2 has the word); a COND3 row is the tension lambda_n = -2N eps_n beta.
 /// Source: [1] COND1-3.
 struct RelaxedSet {
-    Kernel kernel;
-    int gap_sign = 1;
+    Kernel kernel;                        ///< of the pattern
+    int gap_sign = 1;                     ///< delta
     double energy_factor = 0;             ///< E/E_unit = energy_factor |beta|^2
     Eigen::MatrixXd rows;                 ///< R x m
     std::vector<ConditionRow> condition;  ///< size R, COND1 rows first
     Eigen::VectorXd contact;              ///< size m: COND2's row x_0
 
-    [[nodiscard]] int dimension() const { return kernel.dimension(); }
+    [[nodiscard]] int dimension() const { return kernel.dimension(); }  ///< m
+    /// E/E_unit of beta (size m).
     [[nodiscard]] double energy(const Eigen::VectorXd& beta) const { return energy_factor * beta.squaredNorm(); }
+    /// Right-hand sides of `rows` under the shift: delta + gap or 0, plus the shift of each row.
     [[nodiscard]] Eigen::VectorXd limits(const Shift& shift) const;  ///< size R
+    /// The same relaxation of every row of a condition, as a shift.
     [[nodiscard]] Shift shift(const Relaxation& relaxation) const;
 };
 

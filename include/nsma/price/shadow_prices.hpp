@@ -15,12 +15,13 @@ namespace nsma {
 /// Derivative of the optimal objective along a direction of the right-hand sides,
 /// nondimensional: V(t) - V(0) for the right-hand sides at t times the direction.
 struct Slope {
+    /// How much of a derivative there is.
     enum class Kind {
         two_sided,  ///< right == left: the derivative exists
         one_sided,  ///< they differ, or there is no orbit on one side
         refused     ///< no number: the reason says why
     };
-    Kind kind = Kind::refused;
+    Kind kind = Kind::refused;    ///< what `right` and `left` hold
     std::optional<double> right;  ///< lim (V(t) - V(0))/t, t > 0
     std::optional<double> left;   ///< lim (V(0) - V(-t))/t, t > 0
     /// V(t) - V(0) = root sqrt(t) + O(t): the level is an end of the energy interval, where the
@@ -33,7 +34,7 @@ struct Slope {
 /// Derivative of beta itself along a direction.
 struct OrbitSlope {
     std::optional<Eigen::VectorXd> beta;  ///< size m; absent: refused
-    std::string reason;
+    std::string reason;                   ///< one line; why it is refused
 };
 
 class OptimumAnalysis;
@@ -69,8 +70,9 @@ public:
     /// (2; 1 for least_force). Absent for `nearest` and where there are no multipliers.
     [[nodiscard]] std::optional<double> euler_defect() const;
 
+    /// Derivative of the objective along `direction`.
     [[nodiscard]] Slope slope(const Shift& direction) const;
-    /// Implicit function theorem on the active set; T fixed.
+    /// Derivative of beta: implicit function theorem on the active set; T fixed.
     [[nodiscard]] OrbitSlope orbit_slope(const Shift& direction) const;
 
 private:

@@ -7,7 +7,7 @@ namespace nsma {
 
 /// What could be proved of one pattern.
 struct Proof {
-    Certificate certificate;
+    Certificate certificate;      ///< check() accepts what it claims, if `verdict_proved`
     bool verdict_proved = false;  ///< trivial, empty or nonempty with its kind and E_min, exactly
     std::string unproved;         ///< one line: what is missing; empty when nothing is
 

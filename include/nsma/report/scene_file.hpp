@@ -10,8 +10,9 @@
 
 namespace nsma {
 
-/// Levels beyond these are no energies of a bar, and what is computed from them would leave the range of numbers.
+/// Least level accepted: beyond it and greatest_level what is computed would leave the range of numbers.
 inline constexpr double least_level = 1e-30;
+/// Greatest level accepted.
 inline constexpr double greatest_level = 1e30;
 
 /// Reads and checks a scene file (TOML, SI units). Every key is required unless the README says

@@ -25,6 +25,7 @@ enum class Verdict {
     admissible,    ///< an orbit was found and its replay accepted
     failed         ///< none of the above could be established; the reason says why
 };
+/// "trivial", "inadmissible", ...
 [[nodiscard]] std::string_view name(Verdict verdict);
 
 /// One call of one solver from one start.
@@ -35,8 +36,8 @@ struct SolverRun {
     bool usable = false;   ///< after polish, feasible by our own residuals
     double objective = 0;  ///< recomputed after polish; null in reports unless usable
     double violation = 0;  ///< largest constraint violation of the raw answer, recomputed
-    int iterations = 0;
-    double seconds = 0;  ///< wall time of the call
+    int iterations = 0;    ///< of the library; of NLopt evaluations
+    double seconds = 0;    ///< wall time of the call
 };
 
 /// The two solvers against each other.
@@ -44,10 +45,11 @@ enum class Agreement {
     not_needed,         ///< closed form, or an answer proved the best before a second solver
     agree,              ///< both usable, objectives within tolerance
     different_optimum,  ///< both usable, objectives differ
-    one_failed,
-    both_failed,
-    single  ///< only one solver was asked for, and it is usable
+    one_failed,         ///< one answer is usable, the other is not
+    both_failed,        ///< no answer is usable
+    single              ///< only one solver was asked for, and it is usable
 };
+/// "not_needed", "agree", ...
 [[nodiscard]] std::string_view name(Agreement agreement);
 
 /// How far the kept orbit is known to be the best one. Objective values as reported.
@@ -62,28 +64,28 @@ struct Optimality {
 /// The answer for one pattern, one objective and, unless the least-energy orbit is asked, one
 /// energy level.
 struct OrbitAnswer {
-    Pattern pattern;
-    int gap_sign = 1;
-    int kernel_dimension = 0;
-    Verdict verdict = Verdict::failed;
-    std::optional<PatternKind> kind;  ///< of an admissible pattern
-    std::string reason;               ///< one line; empty when there is nothing to say
-    EnergyInterval interval;
-    bool verdict_proved = false;           ///< by an exact certificate, or by the replayed orbit
-    std::optional<Optimality> optimality;  ///< of the kept orbit
-    std::optional<double> level;           ///< the level asked, in energy units
-    Objective objective = Objective::least_shock;
-    std::optional<double> objective_value;       ///< nondimensional, of the kept orbit
-    Eigen::VectorXd reference;                   ///< `nearest`: the window it was measured against
-    std::optional<double> objective_difference;  ///< relative gap between the two solvers
-    std::string method;                          ///< "closed-form", "ipopt", "nlopt-slsqp", "segment"...
-    std::optional<Orbit> orbit;                  ///< present if and only if the verdict is admissible
-    std::optional<double> energy;                ///< E/E_unit of the kept orbit
-    std::optional<Replay> replay;
-    std::optional<Classification> classification;
-    std::vector<SolverRun> solvers;  ///< the best run of each solver first, then the others
-    Agreement agreement = Agreement::not_needed;
-    double seconds = 0;
+    Pattern pattern;                               ///< (N, r, p)
+    int gap_sign = 1;                              ///< delta
+    int kernel_dimension = 0;                      ///< m
+    Verdict verdict = Verdict::failed;             ///< what is known of the level, of the pattern without one
+    std::optional<PatternKind> kind;               ///< of an admissible pattern
+    std::string reason;                            ///< one line; empty when there is nothing to say
+    EnergyInterval interval;                       ///< energies of the pattern, in energy units
+    bool verdict_proved = false;                   ///< by an exact certificate, or by the replayed orbit
+    std::optional<Optimality> optimality;          ///< of the kept orbit
+    std::optional<double> level;                   ///< the level asked, in energy units
+    Objective objective = Objective::least_shock;  ///< the one asked
+    std::optional<double> objective_value;         ///< nondimensional, of the kept orbit
+    Eigen::VectorXd reference;                     ///< `nearest`: the window it was measured against
+    std::optional<double> objective_difference;    ///< relative gap between the two solvers
+    std::string method;                            ///< "closed-form", "ipopt", "nlopt-slsqp", "segment"...
+    std::optional<Orbit> orbit;                    ///< present if and only if the verdict is admissible
+    std::optional<double> energy;                  ///< E/E_unit of the kept orbit
+    std::optional<Replay> replay;                  ///< of the orbit found, kept or refused
+    std::optional<Classification> classification;  ///< of the same orbit
+    std::vector<SolverRun> solvers;                ///< the best run of each solver first, then the others
+    Agreement agreement = Agreement::not_needed;   ///< of the two solvers
+    double seconds = 0;                            ///< wall time of the whole answer
 };
 
 /// Whether the orbit of an answer is proved the best of its pattern at its level.

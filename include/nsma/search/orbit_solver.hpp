@@ -14,29 +14,32 @@ struct PatternProblem;
 /// Relative difference of objectives that still agree.
 inline constexpr double agreement_tolerance = 1e-6;
 
+/// Which solvers take part where no closed form proves the optimum.
 enum class SolverChoice {
-    ipopt,
-    nlopt,
-    both,  ///< each against the other
+    ipopt,  ///< Ipopt alone
+    nlopt,  ///< NLopt alone
+    both,   ///< each against the other
     /// Until an answer is proved the best: the closed form where there is one (every simplex), else a polished segment
     /// point, NLopt, then both.
     proof
 };
 
+/// How hard a solver tries.
 struct OrbitSolverOptions {
-    SolverChoice solvers = SolverChoice::proof;
+    SolverChoice solvers = SolverChoice::proof;  ///< which of them
     /// Starts per solver while the optimum is not proved, >= 1; above 64 unknowns a quarter of them.
     int starts = 8;
     double raw_violation = 1e-4;  ///< a raw answer further out is a failure of its solver
-    SolverOptions solver;
+    SolverOptions solver;         ///< limits of each call
 };
 
 /// Whether Ipopt runs at most levels, so that OrbitRequest::start saves time.
 [[nodiscard]] bool ipopt_is_usual(const OrbitSolverOptions& options);
 
+/// Which orbit of a pattern is wanted.
 struct OrbitRequest {
-    std::optional<double> level;  ///< E/E_unit, > 0; absent: the least-energy orbit
-    Objective objective = Objective::least_shock;
+    std::optional<double> level;                   ///< E/E_unit, > 0; absent: the least-energy orbit
+    Objective objective = Objective::least_shock;  ///< which orbit of the level
     /// `nearest`: window b_0..b_{2N-1} in units u/dt; empty: the least-energy orbit (closed gap:
     /// the least-shock orbit at the level).
     Eigen::VectorXd reference{};
@@ -48,13 +51,17 @@ struct OrbitRequest {
 /// a point, a segment, an end of the energy interval never reach a solver.
 class OrbitSolver {
 public:
+    /// Makes the solvers, for any number of answers. Throws std::invalid_argument for starts < 1.
     explicit OrbitSolver(const OrbitSolverOptions& options = {});
     ~OrbitSolver();
+    /// Takes the solvers over; what is left may only be assigned to or destroyed.
     OrbitSolver(OrbitSolver&&) noexcept;
+    /// Takes the solvers over, likewise.
     OrbitSolver& operator=(OrbitSolver&&) noexcept;
 
-    /// Throws std::invalid_argument on a level that is not finite and > 0, a reference or start
-    /// of a wrong size, or a problem made for another gap sign; any other failure is in the answer.
+    /// The best orbit found, or why there is none; one solver a process, never threads. Throws std::invalid_argument on
+    /// a level that is not finite and > 0, a reference or start of a wrong size, or a problem made for another gap
+    /// sign; any other failure is in the answer.
     [[nodiscard]] OrbitAnswer solve(const Bar& bar, const PatternProblem& problem, const OrbitRequest& request);
 
 private:

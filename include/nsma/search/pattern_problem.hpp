@@ -15,14 +15,15 @@ inline constexpr int max_unknowns = 10'000;
 
 /// Everything about one pattern that no energy level changes: its kernel and admissible set.
 struct PatternProblem {
-    Kernel kernel;
-    AdmissibleSet set;
+    Kernel kernel;                       ///< of the pattern
+    AdmissibleSet set;                   ///< for a gap of the sign asked
     Proof proof;                         ///< empty when proofs were not asked for
     Verdict verdict = Verdict::trivial;  ///< trivial, inadmissible or admissible; failed: too many unknowns
     std::optional<PatternKind> kind;     ///< of an admissible pattern
     EnergyInterval interval;             ///< exact where proved
 };
 
+/// What pattern_problem() does beyond deciding.
 struct PatternOptions {
     bool prove = true;  ///< certify the verdict, the kind and the energy interval in exact arithmetic
 };

@@ -11,9 +11,9 @@ struct EnergyInterval {
     std::optional<double> least;     ///< E_min; absent when the pattern is not admissible
     std::optional<double> greatest;  ///< greatest energy attained; absent when unbounded or unknown
     std::optional<double> bound;     ///< proved upper bound of the energy; absent when there is none
-    bool unbounded = false;
-    std::string least_exact;  ///< "12/11"; empty without a proof
-    std::string greatest_exact;
+    bool unbounded = false;          ///< no greatest energy
+    std::string least_exact;         ///< "12/11"; empty without a proof
+    std::string greatest_exact;      ///< of the greatest energy; empty without a proof or when unbounded
 };
 
 }  // namespace nsma

@@ -20,6 +20,7 @@ enum class Objective {
 }
 
 [[nodiscard]] std::string_view name(Objective objective);  ///< "least-shock", "nearest", ...
+/// The objective of this name; absent for any other word.
 [[nodiscard]] std::optional<Objective> objective_named(std::string_view name);
 
 }  // namespace nsma

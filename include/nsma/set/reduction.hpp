@@ -37,15 +37,15 @@ struct ForcedZero {
 /// partial sums P_k = gamma_1 + .. + gamma_k of the first round, P_k <= 0 for k = 1..n, and the rest of them in the
 /// second, P_n - P_k <= 0 for k = 1..n-1.
 struct Reduction {
-    int gap_sign = 1;             ///< delta
-    double energy_factor = 0;     ///< E/E_unit = energy_factor |gamma|^2
-    int kernel_dimension = 0;     ///< m, the size of beta
-    int flip = 1;                 ///< +1 or -1
-    bool bounded = false;         ///< gamma >= 0: every class has a contact step; else none has one
-    Eigen::VectorXi contact_row;  ///< all entries alike; size n = m, or 0 where every column is zero
-    Eigen::MatrixXi rows;         ///< kept COND1 rows, R x n
-    std::vector<int> row_step;    ///< n of each kept row, 1 <= n < r
-    RemovalCounts removed;
+    int gap_sign = 1;                ///< delta
+    double energy_factor = 0;        ///< E/E_unit = energy_factor |gamma|^2
+    int kernel_dimension = 0;        ///< m, the size of beta
+    int flip = 1;                    ///< +1 or -1
+    bool bounded = false;            ///< gamma >= 0: every class has a contact step; else none has one
+    Eigen::VectorXi contact_row;     ///< all entries alike; size n = m, or 0 where every column is zero
+    Eigen::MatrixXi rows;            ///< kept COND1 rows, R x n
+    std::vector<int> row_step;       ///< n of each kept row, 1 <= n < r
+    RemovalCounts removed;           ///< by argument
     std::vector<ForcedZero> forced;  ///< in the order they were found
     /// Nonempty: the set is empty by an argument in integers (for a closed gap: only rest).
     std::string empty_because;
@@ -53,7 +53,7 @@ struct Reduction {
     [[nodiscard]] int variables() const { return static_cast<int>(contact_row.size()); }  ///< n
     /// beta (size m) of a reduced point gamma (size n).
     [[nodiscard]] Eigen::VectorXd beta(const Eigen::VectorXd& gamma) const;
-    /// The inverse.
+    /// gamma (size n) of beta (size m): the inverse of beta().
     [[nodiscard]] Eigen::VectorXd gamma(const Eigen::VectorXd& beta) const;
 };
 

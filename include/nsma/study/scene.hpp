@@ -21,25 +21,26 @@ struct ModeSelection {
 };
 /// Patterns by period and, if given, contact duration, both in units of tau, bounds included.
 struct PeriodSelection {
-    std::array<double, 2> period{0.0, 4.0};
-    std::optional<std::array<double, 2>> contact;
+    std::array<double, 2> period{0.0, 4.0};        ///< [lo, hi] of T/tau
+    std::optional<std::array<double, 2>> contact;  ///< [lo, hi] of p/N; absent: any
 };
 /// Patterns named one by one as (r, p).
 struct ListSelection {
-    std::vector<std::pair<int, int>> steps;
+    std::vector<std::pair<int, int>> steps;  ///< (r, p), in the order wanted
 };
+/// One of the three ways to name patterns.
 using PatternSelection = std::variant<ModeSelection, PeriodSelection, ListSelection>;
 
 /// What to compute: the plain data of a scene file, already checked.
 struct Scene {
-    std::string title;
-    Bar bar;
-    Mesh mesh;
-    PatternSelection patterns;
-    bool all_kinds = false;      ///< solve free and stuck patterns as well as contact motions
-    std::vector<double> levels;  ///< energy ratios E/E_g, joules for a closed gap; all > 0
-    Objective objective = Objective::least_shock;
-    std::string text;  ///< the scene file as read; empty for a scene made in code
+    std::string title;                             ///< as charts show it
+    Bar bar;                                       ///< SI units
+    Mesh mesh;                                     ///< N cells
+    PatternSelection patterns;                     ///< which patterns
+    bool all_kinds = false;                        ///< solve free and stuck patterns as well as contact motions
+    std::vector<double> levels;                    ///< energy ratios E/E_g, joules for a closed gap; all > 0
+    Objective objective = Objective::least_shock;  ///< of the orbits at the levels
+    std::string text;                              ///< the scene file as read; empty for a scene made in code
 };
 
 /// Whether a pattern of this kind is solved; of other patterns only the verdict is given.
@@ -47,8 +48,9 @@ struct Scene {
     return kind && (all_kinds || *kind == PatternKind::contact);
 }
 
-/// Patterns of one scene, and levels over all of them: what memory holds in any case.
+/// Most patterns of one scene: what memory holds in any case.
 inline constexpr std::int64_t max_patterns = 10'000'000;
+/// Most levels of one scene over all of its patterns.
 inline constexpr std::int64_t max_pattern_levels = 1'000'000'000;
 /// Throws std::invalid_argument (name, expected, got) where a scene, checked otherwise, asks for more.
 void expect_feasible(const Scene& scene);

@@ -35,17 +35,19 @@ struct Bar {
 /// What a quantity of a bar may be, in SI units: more than any bar has, and little enough for all that is computed from
 /// it to be a number.
 struct BarQuantity {
-    const char* name;
-    double Bar::*value;
-    double least;
-    double greatest;
+    const char* name;    ///< as in a scene, with underscores
+    double Bar::*value;  ///< the member of Bar
+    double least;        ///< least value accepted [SI]
+    double greatest;     ///< greatest value accepted [SI]
 };
+/// Every quantity of a bar that must be positive; the gap has bounds of its own.
 inline constexpr std::array<BarQuantity, 4> bar_quantities{{{"length", &Bar::length, 1e-9, 1e6},
                                                             {"young_modulus", &Bar::young_modulus, 1e-3, 1e15},
                                                             {"density", &Bar::density, 1e-3, 1e9},
                                                             {"area", &Bar::area, 1e-18, 1e6}}};
-/// Of a gap that is not zero the size.
+/// Least size of a gap that is not zero [m].
 inline constexpr double least_gap = 1e-15;
+/// Greatest size of a gap [m].
 inline constexpr double greatest_gap = 1e6;
 /// What a gap is expected to be, in words.
 [[nodiscard]] std::string gap_expected();

@@ -21,8 +21,8 @@ struct MarchOptions {
 struct MarchedStep {
     double tip = 0.0;            ///< tip displacement at the start of the step [m]
     double contact_force = 0.0;  ///< [N], 0 in a free step; <= 0 is compression
-    bool contact = false;
-    bool silent = false;
+    bool contact = false;        ///< the tip was held at the wall
+    bool silent = false;         ///< no wave arrived at the wall
 };
 
 /// What the marcher saw over `periods` periods of `period_steps` steps.
@@ -39,7 +39,7 @@ struct MarchReport {
     /// max over period ends of ||Q - Q0|| / ||Q0|| in the energy norm; 0 for Q0 = 0.
     double periodicity_defect = 0.0;
     double energy_drift = 0.0;  ///< max over period ends of |E - E0| / E0; 0 for Q0 = 0
-    int periods = 0;
+    int periods = 0;            ///< marched
 };
 
 /// Marches the unilateral contact problem from Q0 with floating boundary conditions: contact
