@@ -23,6 +23,7 @@ done
 top=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 cd "$top"
 . problems/setup.sh
+packages="$packages python3-numpy"  # a program of problems/ reads results with it
 case " $* " in *" clang "*) packages="$packages clang" ;; esac
 
 install_packages

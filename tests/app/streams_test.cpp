@@ -264,10 +264,6 @@ TEST_F(Surroundings, AnOrbitIsDrawnWhereItIsAskedFor) {
 TEST_F(Surroundings, EveryFolderIsExportedAndPlotted) {
     const auto has = [&](const std::string& name) { return fs::exists(path(name)) && fs::file_size(path(name)) > 100; };
     const std::vector<std::string> one{"--free", "16", "--contact", "4", "--energy", "12"};
-    const auto with = [](Words words, const Words& more) {
-        words.insert(words.end(), more.begin(), more.end());
-        return words;
-    };
     ASSERT_EQ(run(with({"orbit", scene_, "--out", path("orbit")}, one)).exit_code, 0);
     // A sweep and a sensitivity study of one scene share a folder.
     ASSERT_EQ(run({"sweep", scene_, "--out", path("both"), "--quiet"}).exit_code, 0);
