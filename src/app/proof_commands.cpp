@@ -58,7 +58,7 @@ int run_prove(const Arguments& arguments) {
         while (counts.done < total) {
             stop_point();
             write_proof(patterns[static_cast<std::size_t>(counts.done)], scene.bar.gap_sign(), file, counts);
-            progress.show(counts.done, total);
+            progress.show(static_cast<double>(counts.done), static_cast<double>(total));
         }
     } catch (const Interrupted&) {
     }

@@ -105,11 +105,13 @@ void solve(const Arguments& arguments, Crew& crew, const Scene& scene, SweepStor
                      crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
     if (arguments.resume) store.for_each([&queue](const WorkResult& result) { queue.done(result); });
     const auto begin = std::chrono::steady_clock::now();
-    Progress progress("sweep", arguments.quiet);
+    Progress progress("sweep", arguments.quiet, static_cast<double>(queue.work_done()));
     const auto keep = [&](const std::vector<WorkResult>& results) {
         store.put(results);
         for (const WorkResult& result : results) queue.done(result);
-        progress.show(queue.done_count(), queue.total_count());
+        const WorkResult& last = results.back();
+        progress.show(static_cast<double>(queue.work_done()), static_cast<double>(queue.work_total()),
+                      last.record ? last.record->pattern : last.answer->pattern);
     };
     if (crew.workers() > 0) share(crew, scene, queue, keep);
     // Alone, or with everyone else gone.
