@@ -154,8 +154,10 @@ int run_sweep(const Arguments& arguments) {
     SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver, scene.all_kinds)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
     solve(arguments, crew, scene, store);
-    const auto [summary, line, span] = export_sweep(store, arguments.out, arguments.distinct);
+    const auto [summary, line, span, spent] = export_sweep(store, arguments.out, arguments.distinct);
     fmt::print("{}\n{}{}\n", derived_text(scene), summary_table(summary), line);
+    if (const std::string text = open_time_text(spent, arguments.solver.starts); !text.empty())
+        fmt::print("{}\n", text);
     if (span && summary.levels > 0 && summary.solved == 0)
         fmt::print("no level was solved: the orbits of these patterns have {}\n", energies_text(*span, scene.bar));
     if (summary.interrupted) return exit_interrupted;
