@@ -164,7 +164,8 @@ TEST_F(Faults, ProofsAreWholeOrNotThere) {
         return {"prove", scene_, "--out", path(out), "--quiet"};
     };
     ASSERT_EQ(run(prove("whole")).code, 0);
-    for (const Call& call : {Call{"write", "ENOSPC"}, {"fsync", "EIO"}, {"rename", "ENOSPC"}, {"close", "EIO"}}) {
+    for (const Call& call :
+         {Call{"write", "ENOSPC"}, {"ftruncate", "EIO"}, {"fsync", "EIO"}, {"rename", "ENOSPC"}, {"close", "EIO"}}) {
         const int faults = each_fault(call, prove("out"), "out", [&](const Ended& ended) {
             expect_orderly(ended, 0);
             if (fs::exists(folder_ / "out")) {

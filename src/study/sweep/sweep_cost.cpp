@@ -17,7 +17,7 @@ constexpr double closed_form = 100;   // an orbit by a formula
 constexpr double by_ipopt = 5'500;    // one of a contact motion by solvers,
 constexpr double by_nlopt = 1'000;
 constexpr double polished = 0.15;    // and so many m^3 more
-constexpr double searched = 3'000;   // one of a free pattern from eight starts,
+constexpr double searched = 3'000;   // one of a free pattern from eight starts, each of them a twentieth,
 constexpr double searched_on = 4;    // and so many m^3 more,
 constexpr double searched_all = 12;  // or so many where every method is tried in turn
 
@@ -27,7 +27,7 @@ double answer_cost(PatternKind kind, double m, Objective objective, const OrbitS
     const double cube = m * m * m;
     if (kind == PatternKind::free) {
         if (proof && (m == 2 || objective == Objective::least_force)) return closed_form;
-        return (searched + (proof ? searched_all : searched_on) * cube) * options.starts / 8;
+        return (searched + (proof ? searched_all : searched_on) * cube) * (12 + options.starts) / 20;
     }
     if (proof) return closed_form;
     return (options.solvers != SolverChoice::nlopt ? by_ipopt : 0) +
