@@ -33,7 +33,7 @@ int run_accuracy(const Arguments& arguments) {
         whole = accuracy(
             scene, arguments.quick, [&](const AccuracyRecord& record) { folder.add(record); },
             [&](long done, long total) {
-                progress.show(done, total);
+                progress.show(static_cast<double>(done), static_cast<double>(total));
                 return !stop_requested();
             });
     } catch (const Interrupted&) {  // in the middle of a piece of work

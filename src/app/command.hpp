@@ -27,14 +27,14 @@ struct Arguments {
     ScanMethod method = ScanMethod::certified;
     bool all_kinds = false;  ///< also free and stuck patterns
     bool distinct = false;   ///< one row a motion
-    bool resume = false;     ///< go on with what the folder holds
+    bool resume = false;     ///< go on with what an interrupted run left
     bool quick = false;
     bool curves = false;  ///< the curves of every orbit as well
     bool csv = false;
     bool json = false;
     bool quiet = false;
     bool verbose = false;
-    bool fresh = false;  ///< whatever the folder holds
+    bool fresh = false;  ///< whatever an interrupted run left
     Drawing drawing;     ///< of `plot`
 
     /// The scene with what is said anew, checked. This and the next throw InputError.

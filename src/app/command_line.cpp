@@ -256,9 +256,8 @@ std::vector<Entry> commands() {
                                  "leave out of levels.csv and orbits.jsonl what a row above has under another label");
     const Option quiet = flag("--quiet", &Arguments::quiet, "no progress on stderr");
     const Option resume = [](CLI::App& command, Arguments& arguments) {
-        auto* const old = command.add_flag("--resume", arguments.resume, "go on with what the folder holds");
-        command
-            .add_flag("--fresh", arguments.fresh, "begin anew, also where an interrupted sweep could be gone on with")
+        auto* const old = command.add_flag("--resume", arguments.resume, "go on with what an interrupted run left");
+        command.add_flag("--fresh", arguments.fresh, "begin anew, also where an interrupted run could be gone on with")
             ->excludes(old);
     };
     return {
@@ -318,7 +317,7 @@ std::vector<Entry> commands() {
         {"prove",
          "write exact certificates of the verdicts and energy intervals, one a line",
          {scene, bar_and_mesh, period, pattern(false),
-          text("--out", &Arguments::out, "file to write; must not exist yet; until it is complete FILE.part"), quiet},
+          text("--out", &Arguments::out, "file to write; until it is complete FILE.part"), resume, quiet},
          "Examples:\n"
          "  nsma prove problems/first-mode.toml --cells 6 --free 16 --contact 4 --out proof.jsonl\n"
          "  nsma prove problems/first-mode.toml --cells 24 --period 0 4 --out proofs.jsonl",

@@ -4,32 +4,40 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
 
 namespace nsma::app {
+namespace {
 
-Progress::Progress(std::string what, bool quiet)
-    : what_(std::move(what)), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+std::string time_text(double seconds) {
+    if (seconds < 120) return fmt::format("{:.0f} s", seconds);
+    return seconds < 7200 ? fmt::format("{:.0f} min", seconds / 60) : fmt::format("{:.0f} h", seconds / 3600);
+}
+
+}  // namespace
+
+Progress::Progress(std::string what, bool quiet, double earlier)
+    : what_(std::move(what)), quiet_(quiet), earlier_(earlier), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 void Progress::clear() {
     if (drawn_) std::fputs("\r\x1b[K", stderr);
     drawn_ = false;
 }
 
-void Progress::show(long done, long total) {
+void Progress::show(double done, double total, const std::optional<Pattern>& at) {
     if (quiet_ || total <= 0) return;
     const auto now = Clock::now();
     const std::chrono::duration<double> since = now - last_;
     if (since.count() < (terminal_ ? 0.1 : 10.0)) return;
     last_ = now;
     const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    const double rate = static_cast<double>(done) / elapsed;
-    const double share = static_cast<double>(done) / static_cast<double>(total);
-    const double left = rate > 0 ? static_cast<double>(total - done) / rate : 0.0;
-    const std::string figures =
-        fmt::format("{}/{} ({:.0f} %), {:.1f}/s, {:.0f} s left", done, total, 100 * share, rate, left);
+    const double share = done / total;
+    std::string figures = fmt::format("{:.0f} %", std::floor(100 * share));
+    if (done > earlier_) figures += ", " + time_text(elapsed * (total - done) / (done - earlier_)) + " left";
+    if (at) figures += fmt::format(", at ({}, {})", at->free_steps, at->contact_steps);
     if (terminal_) {
         // A line that wraps would be drawn below itself again and again.
         winsize size{};

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -20,58 +22,152 @@ namespace {
 // Bytes: of a chain of some 2,500 columns.
 constexpr std::size_t longest_certificate = 256u << 20U;
 
-struct Counts {
-    long done = 0;
-    long proved = 0;
-    long exact = 0;  // greatest energies
-    KindCounts admissible;
-};
-
-void write_proof(const Pattern& pattern, int gap_sign, PartFile& file, Counts& counts) {
-    const PatternProblem problem = pattern_problem(pattern, gap_sign);
-    const Proof& proof = problem.proof;
-    ++counts.done;
-    if (proof.verdict_proved) {
-        file.write(certificate_json(proof.certificate) + "\n");
-        ++counts.proved;
-    } else {
-        say("({}, {}): unproved: {}", pattern.free_steps, pattern.contact_steps, proof.unproved);
-    }
-    if (problem.verdict != Verdict::admissible) return;
-    if (proof.exact_greatest() || gap_sign == 0) ++counts.exact;
-    counts.admissible.add(*problem.kind);
+// The four integers that are the problem.
+std::string problem_text(const Pattern& pattern, int gap_sign) {
+    return fmt::format("({}, {}, {}, {})", pattern.cells, pattern.free_steps, pattern.contact_steps, gap_sign);
 }
+
+// The proofs of one run, in the order of its patterns.
+class Proofs {
+public:
+    Proofs(const Scene& scene, const std::vector<Pattern>& patterns)
+        : patterns_(patterns), gap_sign_(scene.bar.gap_sign()) {}
+
+    [[nodiscard]] long done() const { return done_; }
+    [[nodiscard]] long total() const { return static_cast<long>(patterns_.size()); }
+    [[nodiscard]] bool finished() const { return done_ == total(); }
+    [[nodiscard]] bool all_proved() const { return proved_ == total(); }
+    [[nodiscard]] const Pattern& next() const { return patterns_[static_cast<std::size_t>(done_)]; }
+    [[nodiscard]] std::string text() const {
+        return fmt::format("{} patterns, {} proved; {} admissible ({}), greatest energy exact for {}", done_, proved_,
+                           admissible_.total(), admissible_.text(), exact_);
+    }
+
+    /// Throws unless the file, where there is one, holds nothing but certificates that this run writes again.
+    void expect_replaceable(const std::string& path) const {
+        if (std::error_code code; !std::filesystem::exists(path, code)) return;
+        if (std::error_code code; !std::filesystem::is_regular_file(path, code))
+            fail(path, "expected a file of certificates, got no regular file");
+        std::vector<Pattern> own = patterns_;
+        std::sort(own.begin(), own.end(), before);
+        InputFile file(path, "a file of certificates");
+        try {
+            for (std::string line; file.line(line, longest_certificate);) {
+                stop_point();
+                const std::string where = fmt::format("line {}", file.line_number());
+                const Certificate certificate = parse_certificate(line, where);
+                if (certificate.gap_sign == gap_sign_ &&
+                    std::binary_search(own.begin(), own.end(), certificate.pattern, before))
+                    continue;
+                throw InputError(fmt::format("{}: expected a pattern of this run, got {}", where,
+                                             problem_text(certificate.pattern, certificate.gap_sign)));
+            }
+        } catch (const InputError& error) {
+            fail(path, fmt::format("holds more than certificates of this run ({}); choose another file or remove it",
+                                   error.what()));
+        }
+    }
+
+    /// Takes in the certificates that an interrupted run left; the bytes of their lines, without one that is torn.
+    /// Throws where this run would have written others.
+    [[nodiscard]] std::uintmax_t take(const std::string& path) {
+        InputFile file(path, "the certificates so far");
+        const std::uintmax_t size = std::filesystem::file_size(path);
+        std::uintmax_t taken = 0;
+        for (std::string line; file.line(line, longest_certificate); taken += line.size() + 1) {
+            stop_point();
+            if (taken + line.size() == size) break;  // without its end
+            try {
+                take(parse_certificate(line, fmt::format("line {}", file.line_number())), file.line_number());
+            } catch (const InputError& error) {
+                fail(path, fmt::format("is of another run ({}); --fresh begins anew", error.what()));
+            }
+        }
+        return taken;
+    }
+
+    /// Proves the next pattern; without a certificate it has said why.
+    [[nodiscard]] std::optional<Certificate> prove_next() {
+        const Pattern& pattern = next();
+        PatternProblem problem = pattern_problem(pattern, gap_sign_);
+        Proof& proof = problem.proof;
+        if (problem.verdict == Verdict::admissible) count(proof, *problem.kind);
+        ++done_;
+        if (proof.verdict_proved) {
+            ++proved_;
+            return std::move(proof.certificate);
+        }
+        say("({}, {}): unproved: {}", pattern.free_steps, pattern.contact_steps, proof.unproved);
+        return std::nullopt;
+    }
+
+private:
+    static bool before(const Pattern& a, const Pattern& b) {
+        return std::tie(a.cells, a.free_steps, a.contact_steps) < std::tie(b.cells, b.free_steps, b.contact_steps);
+    }
+
+    void take(Certificate certificate, long line) {
+        const auto refuse = [line](const std::string& expected, const std::string& got) {
+            throw InputError(fmt::format("line {}: expected {}, got {}", line, expected, got));
+        };
+        const std::string got = problem_text(certificate.pattern, certificate.gap_sign);
+        // A pattern before it that left no line must be one that cannot be proved.
+        while (!finished() && (certificate.pattern != next() || certificate.gap_sign != gap_sign_)) {
+            const std::string expected = problem_text(next(), gap_sign_);
+            if (prove_next()) refuse("a certificate of " + expected, got);
+        }
+        if (finished()) refuse("no more certificates", got);
+        if (const CheckResult result = check(certificate); !result.valid)
+            refuse("a proof", "one that fails: " + result.reason);
+        const Proof proof{std::move(certificate), true, {}};
+        if (proof.certificate.claim == Certificate::Claim::nonempty) count(proof, *proof.certificate.kind);
+        ++done_;
+        ++proved_;
+    }
+
+    void count(const Proof& proof, PatternKind kind) {
+        if (proof.exact_greatest() || gap_sign_ == 0) ++exact_;
+        admissible_.add(kind);
+    }
+
+    const std::vector<Pattern>& patterns_;
+    int gap_sign_;
+    long done_ = 0;
+    long proved_ = 0;
+    long exact_ = 0;  // greatest energies
+    KindCounts admissible_;
+};
 
 }  // namespace
 
 int run_prove(const Arguments& arguments) {
     const Scene scene = arguments.scene();
     const auto patterns = arguments.patterns(scene);
-    if (std::error_code code; std::filesystem::exists(arguments.out, code))
-        throw InputError(arguments.out + ": expected a new file, got an existing one");
-    PartFile file(arguments.out);
-
-    Progress progress("prove", arguments.quiet);
-    const auto total = static_cast<long>(patterns.size());
-    Counts counts;
+    const std::string part = arguments.out + ".part";
+    Proofs proofs(scene, patterns);
+    if (std::error_code code; !arguments.resume && !arguments.fresh && std::filesystem::exists(part, code)) {
+        throw InputError(
+            part + ": is an interrupted run: expected --resume to go on with it or --fresh to begin anew, got none");
+    }
+    proofs.expect_replaceable(arguments.out);
+    PartFile file(arguments.out, PartFile::Old::kept);
     try {
-        while (counts.done < total) {
+        file.cut(arguments.resume ? proofs.take(part) : 0);
+        Progress progress("prove", arguments.quiet, static_cast<double>(proofs.done()));
+        while (!proofs.finished()) {
             stop_point();
-            write_proof(patterns[static_cast<std::size_t>(counts.done)], scene.bar.gap_sign(), file, counts);
-            progress.show(counts.done, total);
+            progress.show(static_cast<double>(proofs.done()), static_cast<double>(proofs.total()), proofs.next());
+            if (const auto certificate = proofs.prove_next()) file.write(certificate_json(*certificate) + "\n");
         }
     } catch (const Interrupted&) {
     }
-    progress.clear();
     file.close();
-    const bool whole = counts.done == total;
+    const bool whole = proofs.finished();
     if (whole) file.put_in_place();
-    fmt::print("{} patterns, {} proved; {} admissible ({}), greatest energy exact for {}\n{} {}\n", counts.done,
-               counts.proved, counts.admissible.total(), counts.admissible.text(), counts.exact,
-               whole ? "certificates are in" : "interrupted: those so far are in",
-               whole ? arguments.out : arguments.out + ".part");
+    fmt::print("{}\n{} {}\n", proofs.text(), whole ? "certificates are in" : "interrupted: those so far are in",
+               whole ? arguments.out : part);
     if (!whole) return exit_interrupted;
-    return counts.proved == total ? exit_done : exit_solver;
+    return proofs.all_proved() ? exit_done : exit_solver;
 }
 
 int run_check(const Arguments& arguments) {

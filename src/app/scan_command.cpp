@@ -17,7 +17,7 @@ namespace nsma::app {
 
 int run_scan(const Arguments& arguments) {
     const Scene scene = arguments.scene();
-    const auto total = static_cast<long>(arguments.patterns(scene).size());
+    const auto total = static_cast<double>(arguments.patterns(scene).size());
     long done = 0;
     long nontrivial = 0;
     const bool listed = std::holds_alternative<ListSelection>(scene.patterns);  // then every one is asked for
@@ -27,8 +27,8 @@ int run_scan(const Arguments& arguments) {
     std::map<Finding, long> decided;
     Progress progress("scan", arguments.quiet || isatty(STDOUT_FILENO) != 0);  // rows come as they are found
     const auto take = [&](const PatternRecord& record) {
-        progress.show(++done, total);
         const Pattern& pattern = record.pattern;
+        progress.show(static_cast<double>(++done), total, pattern);
         ++decided[sieve(pattern.free_steps, pattern.contact_steps).finding];
         if (record.kind) admissible.add(*record.kind);
         if (record.verdict == Verdict::failed) {

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "command.hpp"
@@ -19,12 +21,17 @@ int run_sensitivity(const Arguments& arguments) {
     SensitivityRequest request;
     request.solver = arguments.solver;
     request.level = arguments.level(scene);
-    if (arguments.free_steps > 0) request.pattern = arguments.patterns(scene).front();
+    const auto patterns = arguments.patterns(scene);
+    if (arguments.free_steps > 0) request.pattern = patterns.front();
     const FolderLock lock(arguments.out);
     open_sensitivity_folder(arguments.out, scene);
     Progress progress("sensitivity", arguments.quiet);
+    const auto show = [&](long done, long total) {
+        progress.show(static_cast<double>(done), static_cast<double>(total),
+                      patterns[static_cast<std::size_t>(std::min(done, total - 1))]);
+    };
     const SensitivityRecords records = sensitivity(
-        scene, request, [&] { return !stop_requested(); }, [&](long done, long total) { progress.show(done, total); });
+        scene, request, [] { return !stop_requested(); }, show);
     const SensitivitySummary& summary = records.summary;
     progress.clear();
     write_sensitivity(arguments.out, scene, records);

@@ -97,11 +97,13 @@ void solve(const Arguments& arguments, Crew& crew, const Scene& scene, SweepStor
                      crew.workers() > 0 ? SweepQueue::Order::longest_first : SweepQueue::Order::scene);
     if (arguments.resume) store.for_each([&queue](const WorkResult& result) { queue.done(result); });
     const auto begin = std::chrono::steady_clock::now();
-    Progress progress("sweep", arguments.quiet);
+    Progress progress("sweep", arguments.quiet, static_cast<double>(queue.work_done()));
     const auto keep = [&](const std::vector<WorkResult>& results) {
         store.put(results);
         for (const WorkResult& result : results) queue.done(result);
-        progress.show(queue.done_count(), queue.total_count());
+        const WorkResult& last = results.back();
+        progress.show(static_cast<double>(queue.work_done()), static_cast<double>(queue.work_total()),
+                      last.record ? last.record->pattern : last.answer->pattern);
     };
     if (crew.workers() > 0) share(crew, scene, queue, keep);
     // Alone, or with everyone else gone.
@@ -144,8 +146,10 @@ int run_sweep(const Arguments& arguments) {
     SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver, scene.all_kinds)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
     solve(arguments, crew, scene, store);
-    const auto [summary, line, span] = export_sweep(store, arguments.out, arguments.distinct);
+    const auto [summary, line, span, spent] = export_sweep(store, arguments.out, arguments.distinct);
     fmt::print("{}\n{}{}\n", derived_text(scene), summary_table(summary), line);
+    if (const std::string text = open_time_text(spent, arguments.solver.starts); !text.empty())
+        fmt::print("{}\n", text);
     if (span && summary.levels > 0 && summary.solved == 0)
         fmt::print("no level was solved: the orbits of these patterns have {}\n", energies_text(*span, scene.bar));
     if (summary.interrupted) return exit_interrupted;

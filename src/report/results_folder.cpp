@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "input_file.hpp"
@@ -23,9 +24,17 @@ void fail(const fs::path& path, const std::string& what) {
 
 void fail_errno(const fs::path& path) { fail(path, fmt::format("cannot be written: {}", std::strerror(errno))); }
 
-PartFile::PartFile(fs::path file)
-    : file_(std::move(file)), part_(file_.string() + ".part"), stream_(std::fopen(part_.c_str(), "wb")) {
+PartFile::PartFile(fs::path file, Old old)
+    : file_(std::move(file)),
+      part_(file_.string() + ".part"),
+      stream_(std::fopen(part_.c_str(), old == Old::kept ? "abe" : "wb")) {
     if (!stream_) fail_errno(part_);
+    if (old == Old::kept && flock(fileno(stream_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        fail(part_, "is in use by another process");
+}
+
+void PartFile::cut(std::uintmax_t size) {
+    if (ftruncate(fileno(stream_.get()), static_cast<off_t>(size)) != 0) fail_errno(part_);
 }
 
 void PartFile::write(std::string_view text) {

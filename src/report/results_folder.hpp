@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -19,8 +20,14 @@ namespace nsma {
 /// A file that is called NAME.part until it is whole. Throws InputError (one line) where it cannot be written.
 class PartFile {
 public:
-    explicit PartFile(std::filesystem::path file);
+    enum class Old {
+        removed,  ///< whatever NAME.part holds
+        kept      ///< it is written on, by this process alone: where another has it so, InputError
+    };
+    explicit PartFile(std::filesystem::path file, Old old = Old::removed);
 
+    /// Keeps only the first bytes of what is there.
+    void cut(std::uintmax_t size);
     /// Appends text, at once for other processes to read.
     void write(std::string_view text);
     /// To the disk; nothing can be written any more.

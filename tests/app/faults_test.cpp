@@ -164,13 +164,14 @@ TEST_F(Faults, ProofsAreWholeOrNotThere) {
         return {"prove", scene_, "--out", path(out), "--quiet"};
     };
     ASSERT_EQ(run(prove("whole")).code, 0);
-    for (const Call& call : {Call{"write", "ENOSPC"}, {"fsync", "EIO"}, {"rename", "ENOSPC"}, {"close", "EIO"}}) {
+    for (const Call& call :
+         {Call{"write", "ENOSPC"}, {"ftruncate", "EIO"}, {"fsync", "EIO"}, {"rename", "ENOSPC"}, {"close", "EIO"}}) {
         const int faults = each_fault(call, prove("out"), "out", [&](const Ended& ended) {
             expect_orderly(ended, 0);
             if (fs::exists(folder_ / "out")) {
                 EXPECT_EQ(contents(folder_ / "out"), contents(folder_ / "whole"));
             } else {
-                const Ended again = run(prove("out"));  // nothing is in the way
+                const Ended again = run(with(prove("out"), {"--resume"}));
                 EXPECT_EQ(again.code, 0) << again.err;
                 EXPECT_EQ(contents(folder_ / "out"), contents(folder_ / "whole"));
             }
@@ -178,6 +179,29 @@ TEST_F(Faults, ProofsAreWholeOrNotThere) {
         EXPECT_GE(faults, 1) << call.name;
         RecordProperty(call.name, faults);
     }
+}
+
+TEST_F(Faults, ProofsKilledAtEveryCallGoOn) {
+    if (!can_trace()) GTEST_SKIP() << "no strace, or no right to trace";
+    const Words prove{"prove", scene_, "--period", "0", "2", "--quiet"};
+    ASSERT_EQ(run(with(prove, {"--out", path("whole")})).code, 0);
+    int kills = 0;
+    for (const char* call : {"write", "ftruncate", "fsync", "rename"}) {
+        for (int number = 1;; number += stride) {
+            SCOPED_TRACE(std::string(call) + " " + std::to_string(number));
+            fs::remove(folder_ / "out");
+            const Words words = with(prove, {"--out", path("out")});
+            if (run(words, strace(call, "signal=KILL", number)).code != killed) break;
+            ++kills;
+            const Ended resumed = run(with(words, {"--resume"}));
+            EXPECT_EQ(resumed.code, 0) << resumed.err;
+            EXPECT_EQ(contents(folder_ / "out"), contents(folder_ / "whole"));
+            EXPECT_FALSE(fs::exists(folder_ / "out.part"));
+            if (HasFailure()) return;
+        }
+    }
+    RecordProperty("kills", kills);
+    EXPECT_GE(kills, 60 / stride);
 }
 
 TEST_F(Faults, ExportKeepsTheTablesThatAreThere) {

@@ -63,10 +63,7 @@ TEST_F(Program, CertificatesAreWrittenAndVerified) {
     const Result checked = run({"check", proofs});
     EXPECT_EQ(checked.exit_code, 0) << checked.out;
     EXPECT_EQ(checked.out, "276 certificates valid, 0 rejected\n");
-    // An existing file is kept.
     const std::string before = contents(proofs);
-    expect_refused({"prove", scene_, "--out", proofs, "--quiet"}, "proofs.jsonl");
-    EXPECT_EQ(contents(proofs), before);
 
     // One false statement: the line, the pattern and what fails.
     std::string forged = before;
@@ -90,21 +87,113 @@ TEST_F(Program, CertificatesAreWrittenAndVerified) {
     expect_refused({"check", write("old.jsonl", old + "\n")}, "expected 2, got 1");
 }
 
-TEST_F(Program, InterruptedProofsAreNotTakenForWhole) {
-    const std::string proofs = path("proofs.jsonl");
-    const pid_t child = start({"prove", scene_, "--cells", "200", "--period", "0", "4", "--out", proofs, "--quiet"});
+class Proofs : public Program {
+protected:
+    [[nodiscard]] Words prove(const Words& more = {}) const {
+        return with({"prove", scene_, "--period", "0", "4", "--out", proofs_, "--quiet"}, more);
+    }
+    /// Refused, and the file as it was.
+    void expect_kept(const std::string& file, const Words& words, const std::string& named) const {
+        const std::string before = contents(file);
+        expect_refused(words, file + ": " + named);
+        EXPECT_EQ(contents(file), before);
+    }
+
+    const std::string proofs_ = path("proofs.jsonl");
+    const std::string part_ = proofs_ + ".part";
+};
+
+TEST_F(Proofs, OnlyCertificatesOfTheSamePatternsAreReplaced) {
+    ASSERT_EQ(run(prove()).exit_code, 0);
+    const std::string whole = contents(proofs_);
+    // Again, and instead of a few of its certificates, in any order, or of none.
+    const auto lines = lines_of(whole);
+    for (const std::string& old : {whole, lines[200] + "\n" + lines[3] + "\n", std::string()}) {
+        write("proofs.jsonl", old);
+        EXPECT_EQ(run(prove()).exit_code, 0);
+        EXPECT_EQ(contents(proofs_), whole);
+    }
+    EXPECT_FALSE(fs::exists(part_));
+
+    const std::string others = "holds more than certificates of this run (line ";
+    expect_kept(proofs_, {"prove", scene_, "--out", proofs_}, others + "1: expected a pattern of this run");
+    expect_kept(proofs_, prove({"--gap", "-1"}), others + "1: expected a pattern of this run, got (6, 1, 1, 1))");
+    expect_kept(proofs_, prove({"--cells", "5"}), others + "1: ");
+    expect_kept(proofs_, prove({"--fresh", "--cells", "5"}), others + "1: ");
+    write("proofs.jsonl", lines[0] + "\nhello\n");
+    expect_kept(proofs_, prove(), others + "2: expected one JSON object a line");
+    fs::create_directory(path("folder"));
+    expect_refused({"prove", scene_, "--out", path("folder")}, "folder: expected a file of certificates");
+    expect_refused({"prove", scene_, "--out", "/dev/null"}, "/dev/null: expected a file of certificates");
+}
+
+TEST_F(Proofs, AnInterruptedRunGoesOnFromAnyByte) {
+    ASSERT_EQ(run(prove()).exit_code, 0);
+    const std::string whole = contents(proofs_);
+    fs::remove(proofs_);
+    const std::size_t first = whole.find('\n');
+    for (const std::size_t size :
+         {std::size_t{0}, std::size_t{1}, first, first + 1, whole.size() / 2, whole.size() - 1, whole.size()}) {
+        SCOPED_TRACE(size);
+        write("proofs.jsonl.part", whole.substr(0, size));
+        expect_kept(part_, prove(), "is an interrupted run: expected --resume to go on with it or --fresh");
+        const Result resumed = run(prove({"--resume"}));
+        EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+        EXPECT_NE(resumed.out.find("276 patterns, 276 proved; 35 admissible (18 contact, 17 free, 0 stuck), greatest "
+                                   "energy exact for 35\n"),
+                  std::string::npos)
+            << resumed.out;
+        EXPECT_EQ(contents(proofs_), whole);
+        EXPECT_FALSE(fs::exists(part_));
+        fs::remove(proofs_);
+    }
+    write("proofs.jsonl.part", "anything");
+    EXPECT_EQ(run(prove({"--fresh"})).exit_code, 0);
+    EXPECT_EQ(contents(proofs_), whole);
+    EXPECT_EQ(run(prove({"--resume"})).exit_code, 0);  // nothing to go on with
+    EXPECT_EQ(contents(proofs_), whole);
+}
+
+TEST_F(Proofs, WhatAnotherRunLeftIsNotGoneOnWith) {
+    ASSERT_EQ(run(prove()).exit_code, 0);
+    const auto lines = lines_of(contents(proofs_));
+    fs::remove(proofs_);
+    const auto expect_other = [&](const std::string& text, const Words& words, const std::string& named) {
+        write("proofs.jsonl.part", text);
+        expect_kept(part_, with(words, {"--resume"}), "is of another run (line " + named);
+    };
+    const std::string two = lines[0] + "\n" + lines[1] + "\n";
+    expect_other(two, prove({"--cells", "5"}), "1: expected a certificate of (5, 1, 1, 1), got (6, 1, 1, 1))");
+    expect_other(two, prove({"--gap", "-1"}), "1: expected a certificate of (6, 1, 1, -1), got (6, 1, 1, 1))");
+    expect_other(lines[1] + "\n" + lines[0] + "\n", prove(), "1: expected a certificate of (6, 1, 1, 1), got (6, ");
+    expect_other("hello\n" + two, prove(), "1: expected one JSON object a line");
+    const Words one{"prove", scene_, "--free", "1", "--contact", "1", "--out", proofs_};
+    expect_other(two, one, "2: expected no more certificates, got ");
+    std::string forged = lines[0];
+    forged.replace(forged.find("empty"), 5, "trivial");
+    expect_other(forged + "\n", prove(), "1: expected a proof, got one that fails: ");
+}
+
+TEST_F(Proofs, InterruptedProofsAreNotTakenForWhole) {
+    const Words words = prove({"--cells", "48"});
+    ASSERT_EQ(run(words).exit_code, 0);
+    const std::string whole = contents(proofs_);
+    fs::remove(proofs_);
+    const pid_t child = start(words);
     process::wait_for(
         [&] {
             std::error_code code;
-            return fs::file_size(proofs + ".part", code) > 100'000 && !code;
+            return fs::file_size(part_, code) > 100'000 && !code;
         },
         24);
     kill(child, SIGINT);
     const Result result = finish(child);
     EXPECT_EQ(result.exit_code, 130) << result.err;
-    EXPECT_FALSE(fs::exists(proofs));
-    EXPECT_NE(result.out.find("interrupted: those so far are in " + proofs + ".part"), std::string::npos) << result.out;
-    EXPECT_EQ(run({"check", proofs + ".part"}).exit_code, 0);  // whole lines
+    EXPECT_FALSE(fs::exists(proofs_));
+    EXPECT_NE(result.out.find("interrupted: those so far are in " + part_), std::string::npos) << result.out;
+    EXPECT_EQ(run({"check", part_}).exit_code, 0);  // whole lines
+    EXPECT_EQ(run(with(words, {"--resume"})).exit_code, 0);
+    EXPECT_EQ(contents(proofs_), whole);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "sample.hpp"
 #include "study/sweep/sweep_queue.hpp"
 #include "nsma/report/scene_file.hpp"
+#include "report/sweep/sweep_export.hpp"
 
 namespace nsma {
 namespace {
@@ -236,6 +237,16 @@ TEST_F(SweepStoreTest, ReadsBackWhatWasWritten) {
         EXPECT_FALSE(stored.levels[i].level.has_value());
         EXPECT_EQ(stored.orbits[i].orbit.beta, answer.orbit->beta);
     }
+}
+
+TEST(OpenTime, IsToldWhereItIsMostOfALongTime) {
+    EXPECT_EQ(open_time_text({52, 41, 12}, 8),
+              "most of the time (41 of 52 s) went to 12 levels that stayed unproved: free patterns have many local "
+              "optima; --starts 2 spends less on them, and may miss better orbits");
+    EXPECT_THAT(open_time_text({52, 41, 12}, 1), testing::EndsWith("many local optima"));
+    EXPECT_EQ(open_time_text({52, 26, 12}, 8), "");
+    EXPECT_EQ(open_time_text({9, 9, 12}, 8), "");
+    EXPECT_EQ(open_time_text({}, 8), "");
 }
 
 TEST_F(SweepStoreTest, AnInterruptedSweepLeavesWhatItHas) {

@@ -18,7 +18,7 @@ SweepSummary sweep(const Scene& scene, const OrbitSolverOptions& options, SweepS
             break;
         }
         const WorkResult result = worker.run(queue.next(0).at(0));  // one at a time: the scene's order
-        const long before = queue.done_count();
+        const long before = queue.work_done();
         queue.done(result);
         if (result.record) {
             count(summary, *result.record, scene.all_kinds);
@@ -28,7 +28,7 @@ SweepSummary sweep(const Scene& scene, const OrbitSolverOptions& options, SweepS
             count(summary, *result.answer, result.place > 0);
             sink.answer(*result.answer);
         }
-        if (queue.done_count() > before) sink.progress(queue.done_count(), queue.total_count());
+        if (queue.work_done() > before) sink.progress(queue.work_done(), queue.work_total());
     }
     summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return summary;

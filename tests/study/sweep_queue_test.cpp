@@ -78,7 +78,7 @@ TEST(SweepQueue, OneWorkerTakesTheScenesOrder) {
     }
     EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
     EXPECT_EQ(std::set<Key>(seen.begin(), seen.end()), all_units(scene, 0, 3));
-    EXPECT_EQ(queue.done_count(), queue.total_count());
+    EXPECT_EQ(queue.work_done(), queue.work_total());
     EXPECT_TRUE(queue.next(0).empty());
 }
 
@@ -141,7 +141,7 @@ void expect_each_unit_once(const Scene& scene, const OrbitSolverOptions& options
     EXPECT_TRUE(queue.finished());
     EXPECT_TRUE(held.empty());
     EXPECT_EQ(seen, all_units(scene, extreme ? 1 : 0, last));
-    EXPECT_EQ(queue.done_count(), queue.total_count());
+    EXPECT_EQ(queue.work_done(), queue.work_total());
 }
 
 TEST(SweepQueue, ManyWorkersTakeEachUnitOnceThoughSomeAreLost) {
@@ -215,7 +215,7 @@ TEST(SweepQueue, LevelsThatComeWithAVerdictAreNotHandedOut) {
             all_done(queue, made_up(units));
         }
         EXPECT_EQ(places.size(), 21u);
-        EXPECT_EQ(queue.done_count(), queue.total_count());
+        EXPECT_EQ(queue.work_done(), queue.work_total());
     }
 }
 
@@ -257,6 +257,63 @@ TEST(SweepQueue, GoesOnWhereAStoreEnds) {
         EXPECT_TRUE(rest.finished());
         EXPECT_EQ(seen, all_units(scene, 0, 12));
     }
+}
+
+// The true results of a scene, in a queue's order; what `seen` makes of the shares of work done.
+template <class Seen>
+void run_whole(const Scene& scene, const OrbitSolverOptions& options, SweepQueue::Order order, const Seen& seen) {
+    SweepQueue queue(scene, options, order);
+    SweepWorker worker(scene, options);
+    const std::int64_t total = queue.work_total();
+    std::int64_t before = 0;
+    while (!queue.finished()) {
+        for (const WorkResult& result : worker.run(queue.next(0))) {
+            queue.done(result);
+            EXPECT_GE(queue.work_done(), before);
+            EXPECT_LE(queue.work_done(), total);
+            EXPECT_EQ(queue.work_total(), total);
+            seen(result, queue.work_done() - before);
+            before = queue.work_done();
+        }
+    }
+    EXPECT_EQ(queue.work_done(), total);
+}
+
+TEST(SweepQueue, WorkGrowsToItsTotal) {
+    for (const Objective objective : {Objective::least_shock, Objective::max_energy}) {
+        for (const double gap : {1.0, -1.0}) {
+            Scene scene = scene_of(objective);
+            scene.bar.gap = gap;
+            scene.all_kinds = true;
+            for (const auto order : {SweepQueue::Order::scene, SweepQueue::Order::longest_first})
+                run_whole(scene, {}, order, [](const WorkResult&, std::int64_t) {});
+        }
+    }
+}
+
+TEST(SweepQueue, WorkGoesWhereTimeGoes) {
+    Scene scene = scene_of();
+    scene.mesh.cells = 6;
+    scene.all_kinds = true;
+    scene.levels = {1.6, 6.0, 30.0, 300.0};
+    std::int64_t trivial = 0, solved = 0, least = 1'000'000, outside = 0;
+    run_whole(scene, {}, SweepQueue::Order::scene, [&](const WorkResult& result, std::int64_t work) {
+        if (result.record && result.record->verdict == Verdict::trivial) trivial = std::max(trivial, work);
+        if (!result.answer || result.place == 0) return;
+        const OrbitAnswer& answer = *result.answer;
+        if (answer.verdict != Verdict::admissible) outside = std::max(outside, work);
+        if (answer.kind != PatternKind::free || answer.solvers.empty()) return;
+        solved += work;
+        least = std::min(least, work);
+    });
+    EXPECT_GT(trivial, 0);
+    EXPECT_GT(solved, 0);
+    EXPECT_GT(least, 20 * trivial);
+    EXPECT_GT(least, 20 * outside);
+
+    const auto inside = [&scene](SolverChoice solvers) { return SweepCost(scene, asking(solvers))({6, 16, 4}).inside; };
+    EXPECT_GT(inside(SolverChoice::both), inside(SolverChoice::nlopt));
+    EXPECT_GT(inside(SolverChoice::nlopt), inside(SolverChoice::proof));
 }
 
 TEST(SweepQueue, NearestFollowsThePatternFromLevelToLevel) {

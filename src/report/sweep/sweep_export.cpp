@@ -1,5 +1,6 @@
 #include "sweep_export.hpp"
 
+#include <algorithm>
 #include <array>
 #include <set>
 
@@ -34,8 +35,21 @@ private:
 
 }  // namespace
 
+std::string open_time_text(const TimeSpent& spent, int starts) {
+    constexpr double worth_mentioning = 10;
+    if (spent.seconds < worth_mentioning || 2 * spent.open_seconds <= spent.seconds) return {};
+    const std::string where = fmt::format(
+        "most of the time ({:.0f} of {:.0f} s) went to {} levels that stayed unproved: free patterns have "
+        "many local optima",
+        spent.open_seconds, spent.seconds, spent.open_levels);
+    const int fewer = std::max(starts / 4, 1);
+    if (fewer == starts) return where;
+    return fmt::format("{}; --starts {} spends less on them, and may miss better orbits", where, fewer);
+}
+
 Exported export_sweep(const SweepStore& store, const fs::path& folder, bool distinct) {
     SweepSummary summary;
+    TimeSpent spent;
     std::optional<std::array<double, 2>> span;
     std::optional<SweepFolder> files;
     SeenMotions seen;
@@ -43,6 +57,7 @@ Exported export_sweep(const SweepStore& store, const fs::path& folder, bool dist
     store.for_each([&](const WorkResult& result) {
         if (result.record) {
             count(summary, *result.record, store.scene().all_kinds);
+            spent.seconds += result.record->seconds;
             const EnergyInterval& interval = result.record->interval;
             if (is_solved(store.scene().all_kinds, result.record->kind) && interval.least && interval.greatest) {
                 if (!span) span = {*interval.least, *interval.greatest};
@@ -52,6 +67,11 @@ Exported export_sweep(const SweepStore& store, const fs::path& folder, bool dist
         }
         if (result.answer) {
             count(summary, *result.answer, result.place > 0);
+            spent.seconds += result.answer->seconds;
+            if (result.answer->orbit && !proved_best(*result.answer)) {
+                spent.open_seconds += result.answer->seconds;
+                ++spent.open_levels;
+            }
             const bool copy = seen.before(*result.answer, result.place);
             if (copy && result.place > 0) ++summary.copies;
             if (files) files->answer(*result.answer, copy && distinct);
@@ -64,12 +84,12 @@ Exported export_sweep(const SweepStore& store, const fs::path& folder, bool dist
                 fmt::format("interrupted: {} keeps its complete results; what was done now is in {}, and "
                             "--resume goes on with it",
                             folder.string(), store.file_name()),
-                span};
+                span, spent};
     }
     files->finish(summary);
     const char* const line = summary.interrupted ? "interrupted: partial results are in {}; --resume goes on with them"
                                                  : "results are in {}";
-    return {summary, fmt::format(fmt::runtime(line), folder.string()), span};
+    return {summary, fmt::format(fmt::runtime(line), folder.string()), span, spent};
 }
 
 void export_curves(const SweepStore& store, const fs::path& folder) {

@@ -10,6 +10,16 @@
 
 namespace nsma {
 
+/// Where the solving time of a sweep went, over all runs and processes.
+struct TimeSpent {
+    double seconds = 0;       ///< of all verdicts and answers
+    double open_seconds = 0;  ///< of answers whose orbit is not proved the best
+    int open_levels = 0;
+};
+/// One line where most of a time worth mentioning went to answers that stayed unproved, and which number of starts, of
+/// now `starts`, spends less on them; else empty.
+[[nodiscard]] std::string open_time_text(const TimeSpent& spent, int starts);
+
 /// Writes patterns.csv, levels.csv, orbits.jsonl, timings.csv and the summary of a store into
 /// its folder, each complete or not at all; a part file never replaces complete results. `distinct` leaves answers out
 /// whose motion one before at the same level has under another label. `line` tells the user where they are.
@@ -19,6 +29,7 @@ struct Exported {
     SweepSummary summary;
     std::string line;
     std::optional<std::array<double, 2>> span = {};
+    TimeSpent spent = {};
 };
 [[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder,
                                     bool distinct = false);

@@ -22,14 +22,19 @@ SweepQueue::SweepQueue(const Scene& scene, const OrbitSolverOptions& options, Or
       all_kinds_(scene.all_kinds),
       nearest_(scene.objective == Objective::nearest),
       first_place_(is_extreme(scene.objective) || scene.bar.gap_sign() == 0 ? 1 : 0),
-      last_place_(is_extreme(scene.objective) ? 1 : static_cast<int>(scene.levels.size())) {
-    const auto patterns = patterns_of(scene);
-    state_.assign(patterns.size(), State::left);
-    undecided_ = total_ = static_cast<long>(patterns.size());
-    order_.resize(patterns.size());
+      last_place_(is_extreme(scene.objective) ? 1 : static_cast<int>(scene.levels.size())),
+      cost_(scene, options),
+      patterns_(patterns_of(scene)),
+      state_(patterns_.size(), State::left),
+      undecided_(static_cast<long>(patterns_.size())) {
+    for (const Pattern& pattern : patterns_) {
+        const SweepCost::Cost cost = cost_(pattern);
+        total_ += cost.verdict + cost.answers;
+    }
+    order_.resize(patterns_.size());
     std::iota(order_.begin(), order_.end(), 0U);
-    const auto work = [&patterns](std::uint32_t i) {
-        return static_cast<double>(kernel_dimension(patterns[i])) * patterns[i].period_steps();
+    const auto work = [this](std::uint32_t i) {
+        return static_cast<double>(kernel_dimension(patterns_[i])) * patterns_[i].period_steps();
     };
     if (order == Order::longest_first) {
         std::vector<double> works(order_.size());
@@ -72,10 +77,15 @@ void SweepQueue::verdict_done(const WorkResult& result) {
     if (state == State::done) return;
     state = State::done;
     --undecided_;
-    ++done_;
-    if (!is_solved(all_kinds_, result.record->kind) || last_place_ < first_place_) return;
-    total_ += last_place_;
+    const SweepCost::Cost cost = cost_(patterns_[index(result.pattern)]);
+    done_ += cost.verdict;
+    if (!is_solved(all_kinds_, result.record->kind) || last_place_ < first_place_) {
+        done_ += cost.answers;  // none, but where too many unknowns forbid them
+        return;
+    }
     Open& open = open_[result.pattern];
+    open.cost = cost;
+    open.work_left = cost.answers;
     open.left = last_place_ + 1 - first_place_;
     open.done.resize(index(open.left));
     open.strand_length = nearest_ ? std::max(last_place_, 1) : ipopt_is_usual(options_) ? warm_strand : 1;
@@ -89,6 +99,13 @@ void SweepQueue::verdict_done(const WorkResult& result) {
     if (open.workers == 0) unheld_.insert(result.pattern);
 }
 
+std::int64_t SweepQueue::answer_work(const Open& open, const WorkResult& result) {
+    if (result.place == 0) return 0;
+    const Verdict verdict = result.answer->verdict;
+    const bool inside = verdict == Verdict::admissible || verdict == Verdict::failed;
+    return std::min(inside ? open.cost.inside : open.cost.outside, open.work_left);
+}
+
 void SweepQueue::done(const WorkResult& result) {
     if (result.place < 0) return verdict_done(result);
     const auto found = open_.find(result.pattern);
@@ -97,8 +114,10 @@ void SweepQueue::done(const WorkResult& result) {
     const auto slot = [this](int place) { return index(place - first_place_); };
     if (open.done.at(slot(result.place))) return;
     open.done[slot(result.place)] = true;
-    if (result.place > 0) ++done_;
-    if (--open.left == 0) {
+    const std::int64_t work = --open.left == 0 ? open.work_left : answer_work(open, result);
+    done_ += work;
+    open.work_left -= work;
+    if (open.left == 0) {
         unheld_.erase(result.pattern);
         open_.erase(found);
         return;

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "sweep_cost.hpp"
 #include "sweep_work.hpp"
 
 namespace nsma {
@@ -21,7 +22,7 @@ namespace nsma {
 ///
 /// Verdicts take microseconds: of the longest first, several are handed out together.
 ///
-/// Its memory: a byte and a number a pattern, some hundred bytes a strand of the patterns in hand.
+/// Its memory: some twenty bytes a pattern, some hundred a strand of the patterns in hand.
 class SweepQueue {
 public:
     enum class Order { scene, longest_first };
@@ -35,8 +36,9 @@ public:
     void lost(int worker);
 
     [[nodiscard]] bool finished() const { return undecided_ == 0 && open_.empty(); }
-    [[nodiscard]] long done_count() const { return done_; }    ///< patterns and answers asked
-    [[nodiscard]] long total_count() const { return total_; }  ///< as far as known
+    /// As SweepCost estimates it; the total never changes, and all of it is done at the end.
+    [[nodiscard]] std::int64_t work_done() const { return done_; }
+    [[nodiscard]] std::int64_t work_total() const { return total_; }
 
 private:
     enum class State : std::uint8_t { left, handed, done };
@@ -54,6 +56,8 @@ private:
         std::vector<Strand> strands;
         std::set<int> ready;  // strands that are neither done nor handed
         int workers = 0;      // that hold it
+        SweepCost::Cost cost;
+        std::int64_t work_left = 0;  // of its answers
     };
     // What a worker has in hand, or had last.
     struct Hold {
@@ -66,6 +70,7 @@ private:
     void assign(int worker, Hold hold);
     void release(int worker);
     void verdict_done(const WorkResult& result);
+    [[nodiscard]] static std::int64_t answer_work(const Open& open, const WorkResult& result);
     [[nodiscard]] std::optional<WorkUnit> next_place(long pattern, int worker);
     [[nodiscard]] std::vector<WorkUnit> next_verdicts(int worker);
 
@@ -74,6 +79,8 @@ private:
     bool nearest_ = false;
     int first_place_ = 0;
     int last_place_ = 0;
+    SweepCost cost_;
+    std::vector<Pattern> patterns_;
     std::vector<State> state_;  // of each pattern's verdict
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> batches_;  // ends of the pieces of order_ that are handed out together
@@ -83,8 +90,8 @@ private:
     std::set<long> unheld_;  // open patterns without a worker: of an earlier run, or of lost workers
     std::map<int, Hold> holds_;
     long undecided_ = 0;
-    long done_ = 0;
-    long total_ = 0;
+    std::int64_t done_ = 0;
+    std::int64_t total_ = 0;
 };
 
 }  // namespace nsma
