@@ -56,8 +56,8 @@ INSTANTIATE_TEST_SUITE_P(Interpreters, Reading,
                          testing::Values(Interpreter{"/usr/bin/python3", "-c 'import numpy'", "read_results.py"},
                                          Interpreter{"octave-cli", "--eval 0", "read_results.m"},
                                          Interpreter{"julia", "-e 0", "read_results.jl"}),
-                         [](const auto& info) {
-                             const std::string program = info.param.program;
+                         [](const auto& one) {
+                             const std::string program = one.param.program;
                              return program.substr(program.find('.') + 1);
                          });
 
