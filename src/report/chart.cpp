@@ -35,6 +35,15 @@ set ytics out nomirror
 set title noenhanced
 )";
 
+// A title in letters that are small enough for the width of the picture.
+std::string title_text(const std::string& title, double usual_size) {
+    constexpr std::size_t most = 150;
+    constexpr double fit = 85;  // letters of the usual size
+    const std::string text = shortened(title, most);
+    const double size = usual_size * std::min(1.0, fit / static_cast<double>(std::max<std::size_t>(text.size(), 1)));
+    return fmt::format("{} font ',{:.3g}'", gnuplot_text(text), size);
+}
+
 std::string axis_commands(char name, const Axis& axis) {
     return fmt::format("set {0}label {1}\nset {0}range [{2}]\nset {0}tics autofreq\n{3}", name,
                        gnuplot_text(axis.label), axis.range,
@@ -48,7 +57,7 @@ std::string panel_commands(const Panel& panel) {
             fmt::format("set lmargin screen {}\nset rmargin screen {}\nset bmargin screen {}\nset tmargin screen {}\n",
                         panel.frame->left, panel.frame->right, panel.frame->bottom, panel.frame->top);
     }
-    text += fmt::format("set title {}\n", gnuplot_text(panel.title)) + axis_commands('x', panel.x) +
+    text += fmt::format("set title {}\n", title_text(panel.title, 14)) + axis_commands('x', panel.x) +
             axis_commands('y', panel.y) +
             (panel.key.empty() ? "unset key\n" : fmt::format("set key Left reverse {}\n", panel.key)) +
             "unset object\nunset label\n" + panel.settings;
@@ -134,7 +143,7 @@ std::string gnuplot_script(const Chart& chart, const Drawing& drawing) {
     text += chart.settings;
     const bool several = chart.panels.size() > 1 || !chart.title.empty();
     if (several) text += "set multiplot";
-    if (!chart.title.empty()) text += fmt::format(" title {} font ',15'", gnuplot_text(chart.title));
+    if (!chart.title.empty()) text += " title " + title_text(chart.title, 15);
     if (several) text += "\n";
     for (const Panel& panel : chart.panels) text += panel_commands(panel);
     return text + (several ? "unset multiplot\n" : "") + "unset output\n}\n";

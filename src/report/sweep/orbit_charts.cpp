@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "orbit_panels.hpp"
+#include "report/one_line.hpp"
 
 namespace nsma {
 namespace {
@@ -34,7 +35,7 @@ Chart orbit_chart(const Scene& scene, const OrbitChoice& choice, const std::stri
                                     scene.title, units.time.unit, units.length.unit, force.unit),
                 .settings = "set ylabel offset 0.5,0\n"};
     Panel tips = tip_panel(chart, scene, choice, {0.12, 0.97, 0.52, 0.92});
-    tips.title = fmt::format("{}: {}", scene.title, choice.what);
+    tips.title = fmt::format("{}: {}", shortened(scene.title, 110), choice.what);
     Panel forces{
         .frame = Frame{0.12, 0.97, 0.26, 0.48},
         .x = tips.x,

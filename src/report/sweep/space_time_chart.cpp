@@ -5,6 +5,7 @@
 
 #include "orbit_panels.hpp"
 #include "report/bar_text.hpp"
+#include "report/one_line.hpp"
 
 namespace nsma {
 namespace {
@@ -70,7 +71,7 @@ Chart space_time_chart(const Scene& scene, const StoredOrbit& stored, const std:
                 .settings = R"(# negative blue, nothing white, positive brown; in grey both grow dark, negative more
 set palette defined (0 '#08306b', 0.2 '#2b6cb0', 0.4 '#a9cce3', 0.5 '#ffffff', 0.6 '#f5d7a1', 0.8 '#d9822b', 1 '#a65414')
 )",
-                .title = fmt::format("{}: {}", scene.title, orbit_label(stored))};
+                .title = fmt::format("{}: {}", shortened(scene.title, 80), orbit_label(stored))};
     const auto add = [&](const char* block, const Eigen::MatrixXd& field, const char* unit_name, const char* symbol,
                          double left, bool first) {
         const double largest = field.cwiseAbs().maxCoeff();
