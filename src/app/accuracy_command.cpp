@@ -44,8 +44,8 @@ int run_accuracy(const Arguments& arguments) {
         return exit_interrupted;
     }
     folder.finish();
-    draw_if_possible(accuracy_charts(folder.results()), arguments.out);
     fmt::print("results are in {}\n", arguments.out);
+    draw_if_possible(accuracy_charts(folder.results()), arguments.out);
     return exit_done;
 }
 

@@ -188,11 +188,13 @@ void one_orbit(CLI::App& command, Arguments& arguments) {
                  "R,P[,E]"});
 }
 
-// Words between commas.
+// Words between commas, each once.
 std::vector<std::string> parts(const std::string& word) {
     std::vector<std::string> found;
     std::istringstream stream(word + ',');
-    for (std::string part; std::getline(stream, part, ',');) found.push_back(part);
+    for (std::string part; std::getline(stream, part, ',');) {
+        if (std::find(found.begin(), found.end(), part) == found.end()) found.push_back(part);
+    }
     return found;
 }
 
@@ -330,6 +332,21 @@ std::vector<Entry> commands() {
     };
 }
 
+// Of what a command does not take the option, or else the first word.
+std::string unknown_of(const CLI::App& command) {
+    const auto words = command.remaining();
+    auto word = std::find_if(words.begin(), words.end(), [](const auto& one) { return one.starts_with("--"); });
+    if (word == words.end()) word = words.begin();
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command.get_options()) {
+        if (!option->get_positional()) options.push_back(option->get_name());
+    }
+    std::vector<const char*> names;
+    for (const std::string& option : options) names.push_back(option.c_str());
+    return fmt::format("expected an option of {}, got {}{}", command.get_name(), shortened(*word),
+                       did_you_mean(*word, names));
+}
+
 // All that a command needs and was not given.
 std::string missing_of(const CLI::App& command) {
     std::vector<std::string> names;
@@ -396,7 +413,9 @@ std::optional<Command> read_command_line(int count, const char* const* words) {
         const auto named = app.get_subcommands();
         std::string message = one_line(error.what());
         while (message.ends_with(' ')) message.pop_back();
-        if (const std::string missing = named.empty() ? "" : missing_of(*named.front()); !missing.empty())
+        if (!named.empty() && !named.front()->remaining().empty())
+            message = unknown_of(*named.front());
+        else if (const std::string missing = named.empty() ? "" : missing_of(*named.front()); !missing.empty())
             message = "expected " + missing + " as well";
         throw InputError(fmt::format("command line: {} (see nsma {}--help)", message,
                                      named.empty() ? "" : named.front()->get_name() + " "));

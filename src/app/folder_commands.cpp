@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -40,8 +41,8 @@ Contents contents_of(const fs::path& folder) {
         if (code) fail(folder / file, fmt::format("cannot be read: {}", code.message()));
         return found;
     };
-    const Contents contents{folder, holds(store_name) || holds(store_part_name), holds(orbit_json_name),
-                            holds(accuracy_records_name), holds(sensitivity_records_name)};
+    Contents contents{folder, holds(store_name) || holds(store_part_name), holds(orbit_json_name),
+                      holds(accuracy_records_name), holds(sensitivity_records_name)};
     if (contents.sweep || contents.orbit || contents.accuracy || contents.sensitivity) return contents;
     fail(folder, fmt::format("expected the folder of a sweep, an orbit or a finished study, got one without {}, {}, {} "
                              "and {}",
@@ -83,6 +84,7 @@ int run_export(const Arguments& arguments) {
     const fs::path folder = arguments.input;
     const Contents contents = contents_of(folder);
     expect_sweep(contents, arguments.distinct, "--distinct");
+    expect_sweep(contents, arguments.curves, "--curves");
     const FolderLock lock(folder);
     std::string line = "results are in " + folder.string();
     if (contents.orbit) write_orbit_curves(folder, read_orbit_folder(folder).orbit);
@@ -95,7 +97,7 @@ int run_export(const Arguments& arguments) {
     if (contents.sweep) {
         const SweepStore store(folder);
         line = export_sweep(store, folder, arguments.distinct).line;
-        if (arguments.curves) export_curves(store, folder);
+        export_curves(store, folder, arguments.curves);
     }
     fmt::print("{}\n", line);
     return exit_done;

@@ -16,8 +16,10 @@
 namespace nsma::app {
 namespace {
 
-std::string energy_text(double energy, bool closed) {
-    return closed ? fmt::format("{:.10g} J", energy) : fmt::format("{:.10g} E_g", energy);
+std::string energy_text(double energy, const Bar& bar) {
+    if (bar.gap == 0) return fmt::format("{:.10g} J", energy);
+    const std::string ratio = fmt::format("{:.10g} E_g", energy);
+    return is_unit_bar(bar) ? ratio : ratio + " (" + si_text(energy * bar.energy_unit(), "J") + ")";
 }
 
 std::string_view meaning(PatternKind kind) {
@@ -57,8 +59,7 @@ void print_measurable(const Orbit& orbit) {
                si_text(values.tip_least, "m"), si_text(bar.gap, "m"));
 }
 
-void print_text(const OrbitAnswer& answer, const Reduction& reduction, bool verbose) {
-    const bool closed = answer.gap_sign == 0;
+void print_text(const Bar& bar, const OrbitAnswer& answer, const Reduction& reduction, bool verbose) {
     const Pattern& pattern = answer.pattern;
     if (answer.orbit) print_measurable(*answer.orbit);
     if (answer.kind) fmt::print("kind          {}: {}\n", name(*answer.kind), meaning(*answer.kind));
@@ -69,12 +70,12 @@ void print_text(const OrbitAnswer& answer, const Reduction& reduction, bool verb
                answer.reason.empty() ? "" : "; ", answer.reason);
     if (answer.interval.least) {
         const std::string greatest = answer.interval.unbounded  ? "unbounded"
-                                     : answer.interval.greatest ? energy_text(*answer.interval.greatest, closed)
+                                     : answer.interval.greatest ? energy_text(*answer.interval.greatest, bar)
                                                                 : "unknown";
         const auto exactly = [](const std::string& fraction) {
             return fraction.find('/') == std::string::npos ? std::string() : " = " + fraction;
         };
-        fmt::print("energies      {}{} to {}{}\n", energy_text(*answer.interval.least, closed),
+        fmt::print("energies      {}{} to {}{}\n", energy_text(*answer.interval.least, bar),
                    exactly(answer.interval.least_exact), greatest, exactly(answer.interval.greatest_exact));
     }
     if (verbose && answer.kernel_dimension > 0) print_presolve(reduction);
@@ -119,6 +120,7 @@ void write_orbit(const std::filesystem::path& folder, const Scene& scene, const 
     const FolderLock lock(folder);
     write_orbit_folder(folder, scene, answer);
     const StoredOrbit orbit{answer.level, *answer.energy, *answer.orbit};
+    if (list) fmt::print("results are in {}\n", folder.string());
     draw_if_possible(charts_of(scene, orbit, "orbit"), folder, !list);
 }
 
@@ -152,7 +154,7 @@ int run_orbit(const Arguments& arguments) {
         fmt::print("{}\n", orbit_json(answer, scene.bar));
     } else {
         fmt::print("{}\n", derived_text(scene));
-        print_text(answer, problem.set.reduction, arguments.verbose);
+        print_text(scene.bar, answer, problem.set.reduction, arguments.verbose);
     }
     if (answer.orbit && !arguments.out.empty()) write_orbit(arguments.out, scene, answer, !arguments.json);
     return exit_code(answer);

@@ -77,8 +77,15 @@ public:
         for (std::string line; file.line(line, longest_certificate); taken += line.size() + 1) {
             stop_point();
             if (taken + line.size() == size) break;  // without its end
+            const std::string where = fmt::format("line {}", file.line_number());
+            std::optional<Certificate> certificate;
             try {
-                take(parse_certificate(line, fmt::format("line {}", file.line_number())), file.line_number());
+                certificate = parse_certificate(line, where);
+            } catch (const InputError& error) {
+                fail(path, fmt::format("is damaged ({}); --fresh begins anew", error.what()));
+            }
+            try {
+                take(*certificate, where);
             } catch (const InputError& error) {
                 fail(path, fmt::format("is of another run ({}); --fresh begins anew", error.what()));
             }
@@ -106,9 +113,9 @@ private:
         return std::tie(a.cells, a.free_steps, a.contact_steps) < std::tie(b.cells, b.free_steps, b.contact_steps);
     }
 
-    void take(Certificate certificate, long line) {
-        const auto refuse = [line](const std::string& expected, const std::string& got) {
-            throw InputError(fmt::format("line {}: expected {}, got {}", line, expected, got));
+    void take(const Certificate& certificate, const std::string& where) {
+        const auto refuse = [&where](const std::string& expected, const std::string& got) {
+            throw InputError(fmt::format("{}: expected {}, got {}", where, expected, got));
         };
         const std::string got = problem_text(certificate.pattern, certificate.gap_sign);
         // A pattern before it that left no line must be one that cannot be proved.
@@ -119,7 +126,7 @@ private:
         if (finished()) refuse("no more certificates", got);
         if (const CheckResult result = check(certificate); !result.valid)
             refuse("a proof", "one that fails: " + result.reason);
-        const Proof proof{std::move(certificate), true, {}};
+        const Proof proof{certificate, true, {}};
         if (proof.certificate.claim == Certificate::Claim::nonempty) count(proof, *proof.certificate.kind);
         ++done_;
         ++proved_;

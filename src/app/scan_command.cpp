@@ -37,7 +37,7 @@ int run_scan(const Arguments& arguments) {
         }
         if (record.kernel_dimension > 0) ++nontrivial;
         if (record.kernel_dimension == 0 && !listed) return;
-        fmt::print("{}\n", arguments.csv ? scan_csv_row(scene.bar, record) : scan_table_row(record));
+        fmt::print("{}\n", arguments.csv ? scan_csv_row(scene.bar, record) : scan_table_row(scene.bar, record));
     };
     if (!arguments.csv) fmt::print("{}\n", derived_text(scene));
     fmt::print("{}\n", arguments.csv ? scan_csv_header() : scan_table_header(scene.bar));

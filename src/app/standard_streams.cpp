@@ -19,7 +19,9 @@ void hold_standard_streams() {
 }
 
 void say_line(std::string_view text) {
-    std::fprintf(stderr, "nsma: %.*s\n", static_cast<int>(text.size()), text.data());
+    std::fflush(stdout);  // what was said before it stands before it
+    const char* const cleared = isatty(STDERR_FILENO) != 0 ? "\r\x1b[K" : "";  // of a bar of progress
+    std::fprintf(stderr, "%snsma: %.*s\n", cleared, static_cast<int>(text.size()), text.data());
 }
 
 int output_failed(const std::error_code& error) {

@@ -147,6 +147,7 @@ int run_sweep(const Arguments& arguments) {
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
     solve(arguments, crew, scene, store);
     const auto [summary, line, span, spent] = export_sweep(store, arguments.out, arguments.distinct);
+    if (!summary.interrupted) export_curves(store, arguments.out, false);
     fmt::print("{}\n{}{}\n", derived_text(scene), summary_table(summary), line);
     if (const std::string text = open_time_text(spent, arguments.solver.starts); !text.empty())
         fmt::print("{}\n", text);
@@ -156,7 +157,6 @@ int run_sweep(const Arguments& arguments) {
     draw_if_possible(sweep_charts(read_sweep_folder(arguments.out)), arguments.out);
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
     if (summary.left > 0 && summary.left == summary.admissible) {
-        std::fflush(stdout);
         say("no pattern of the scene is a contact motion; --all-kinds solves the other {}", summary.left);
     }
     const bool found = summary.levels > 0 ? summary.solved > 0 : summary.admissible > summary.left;

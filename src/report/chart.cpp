@@ -24,7 +24,7 @@ if (format eq "png") {{
     mark = 1.0
 }}
 if (format eq "pdf") {{
-    set terminal pdfcairo size {pdf} font 'sans-serif,14' fontscale {d} linewidth {d} pointscale {d} enhanced
+    set terminal pdfcairo size {pdf} font 'sans-serif,14' fontscale {d} linewidth {pen} pointscale {d} enhanced
     mark = 1.0
 }}
 set output '{name}.'.format
@@ -129,6 +129,7 @@ std::string gnuplot_script(const Chart& chart, const Drawing& drawing) {
     constexpr double drawn_width = 1000;  // what sizes of letters, lines and marks are meant for
     constexpr int usual_png = 1600;
     constexpr double points_an_inch = 72;
+    const double fits = drawing.height ? *drawing.height / static_cast<double>(chart.height) : 1e9;
     const auto scale = [&](int usual) { return drawing.width.value_or(usual) / drawn_width; };
     const auto size = [&](double factor, double unit, const char* word) {
         const double height = drawing.height ? *drawing.height : std::round(chart.height * factor);
@@ -136,14 +137,17 @@ std::string gnuplot_script(const Chart& chart, const Drawing& drawing) {
     };
     const double svg = scale(static_cast<int>(drawn_width));
     const double png = scale(usual_png);
+    const double letters = std::min(svg, fits);  // of a flat picture the height decides
+    const double png_letters = std::min(png, fits);
     std::string text = fmt::format(
         fmt::runtime(script_head), fmt::arg("name", chart.name), fmt::arg("formats", fmt::join(drawing.formats, " ")),
-        fmt::arg("svg", size(svg, 1, "")), fmt::arg("s", svg), fmt::arg("png", size(png, 1, "")), fmt::arg("p", png),
-        fmt::arg("pdf", size(svg, points_an_inch, "in")), fmt::arg("d", svg));
+        fmt::arg("svg", size(svg, 1, "")), fmt::arg("s", letters), fmt::arg("png", size(png, 1, "")),
+        fmt::arg("p", png_letters), fmt::arg("pdf", size(svg, points_an_inch, "in")), fmt::arg("d", letters),
+        fmt::arg("pen", 2 * letters));
     text += chart.settings;
     const bool several = chart.panels.size() > 1 || !chart.title.empty();
     if (several) text += "set multiplot";
-    if (!chart.title.empty()) text += " title " + title_text(chart.title, 15);
+    if (!chart.title.empty()) text += " title " + title_text(chart.title, 15) + " noenhanced";
     if (several) text += "\n";
     for (const Panel& panel : chart.panels) text += panel_commands(panel);
     return text + (several ? "unset multiplot\n" : "") + "unset output\n}\n";

@@ -1,5 +1,6 @@
 #include "csv_metadata.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -19,7 +20,7 @@ struct Table {
     const char* file;
     const char* description;
 };
-constexpr std::array<Table, 19> known_tables{
+constexpr std::array<Table, 20> known_tables{
     {{"patterns.csv", "patterns, their verdicts and energy intervals"},
      {"levels.csv",
       "one row an answer; level is in units of E_g, in joules for a closed gap, and empty in the row of a pattern's "
@@ -27,6 +28,7 @@ constexpr std::array<Table, 19> known_tables{
      {"timings.csv", "wall times"},
      {"curves.csv",
       "motion and force of every orbit over one period; the force is that of the step that begins at the row's time"},
+     {"orbit-curves.csv", "motion and force of one orbit over one period"},
      {"optima.csv", "optima whose sensitivity was studied"},
      {"prices.csv", "shadow prices of every condition at every optimum"},
      {"orbit-derivatives.csv", "how the amplitudes of an optimum change"},

@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "chart.hpp"
 #include "results_folder.hpp"
@@ -31,6 +34,16 @@ bool whole(const fs::path& picture) {
     return file.read(end.data(), tail) && end.find(mark) != std::string::npos;
 }
 
+/// Throws NoGnuplot where the shell would find none: before anything that is there is touched.
+void expect_gnuplot() {
+    const char* const folders = std::getenv("PATH");
+    std::istringstream path(folders != nullptr ? folders : "");
+    for (std::string folder; std::getline(path, folder, ':');) {
+        if (access((fs::path(folder) / "gnuplot").c_str(), X_OK) == 0) return;
+    }
+    throw NoGnuplot("gnuplot: cannot be started: No such file or directory; install gnuplot-nox to draw charts");
+}
+
 /// Runs `gnuplot NAME.gp` in the folder; returns whether it succeeded and what it said.
 std::pair<bool, std::string> run_gnuplot(const std::string& script, const fs::path& folder) {
     const std::string command = fmt::format("cd {} && exec gnuplot --default-settings {} 2>&1 </dev/null",
@@ -40,10 +53,6 @@ std::pair<bool, std::string> run_gnuplot(const std::string& script, const fs::pa
     std::string said;
     for (int letter = 0; (letter = std::fgetc(output)) != EOF;) said += static_cast<char>(letter);
     const int status = pclose(output);
-    constexpr int no_such_program = 127;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == no_such_program) {
-        throw NoGnuplot("gnuplot: cannot be started: No such file or directory; install gnuplot-nox to draw charts");
-    }
     return {WIFEXITED(status) && WEXITSTATUS(status) == 0, said};
 }
 
@@ -63,6 +72,7 @@ std::vector<fs::path> draw_chart(const Chart& chart, const fs::path& folder, con
 }  // namespace
 
 std::vector<fs::path> draw_charts(const std::vector<Chart>& charts, const fs::path& folder, const Drawing& drawing) {
+    expect_gnuplot();
     make_folder(folder);
     for (const Chart& chart : charts) {
         write_whole(folder / (chart.name + ".dat"), chart.data);

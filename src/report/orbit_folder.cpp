@@ -1,6 +1,7 @@
 #include "orbit_folder.hpp"
 
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -8,9 +9,11 @@
 
 #include "csv_metadata.hpp"
 #include "input_file.hpp"
+#include "json_numbers.hpp"
 #include "nesting.hpp"
 #include "results_folder.hpp"
 #include "nsma/orbit/kernel.hpp"
+#include "nsma/orbit/replay.hpp"
 #include "nsma/report/orbit_json.hpp"
 #include "nsma/report/scene_file.hpp"
 #include "report/sweep/tables.hpp"
@@ -20,21 +23,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* curves_name = "curves.csv";
+constexpr const char* curves_name = "orbit-curves.csv";
 constexpr std::size_t most_orbit_bytes = std::size_t{1} << 30U;
 constexpr int deepest_orbit = 16;
 
 // The alpha of a file and the bar it is of give the orbit.
 StoredOrbit stored_orbit(const nlohmann::json& json, const Scene& scene) {
-    const Pattern pattern{json.at("cells").get<int>(), json.at("free_steps").get<int>(),
-                          json.at("contact_steps").get<int>()};
+    const Pattern pattern{whole_number(json.at("cells")), whole_number(json.at("free_steps")),
+                          whole_number(json.at("contact_steps"))};
     const auto alpha = json.at("alpha").get<std::vector<double>>();
+    validate(pattern);
+    if (pattern.cells != scene.mesh.cells || alpha.size() != static_cast<std::size_t>(kernel_dimension(pattern)))
+        throw std::invalid_argument("another mesh or number of amplitudes");
     const double velocity = scene.bar.displacement_unit() / Mesh{pattern.cells}.time_step(scene.bar);
     const Eigen::VectorXd beta =
         Eigen::Map<const Eigen::VectorXd>(alpha.data(), static_cast<Eigen::Index>(alpha.size())) / velocity;
     StoredOrbit stored{std::nullopt, 0.0, make_orbit(scene.bar, exact_kernel(pattern), beta)};
     if (!json.at("level").is_null()) stored.level = json.at("level").get<double>();
-    stored.energy = energy(stored.orbit) / scene.bar.energy_unit();
+    stored.energy = energy_ratio(stored.orbit);
+    // Whoever changed the amplitudes changed the motion.
+    const double energy = json.at("energy_joule").get<double>();
+    const bool same = std::abs(stored.energy * scene.bar.energy_unit() - energy) <= 1e-9 * energy;
+    if (!same || !replay(stored.orbit).accepted) throw std::invalid_argument("amplitudes that are not of this orbit");
     return stored;
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "input_file.hpp"
@@ -29,8 +30,14 @@ PartFile::PartFile(fs::path file, Old old)
       part_(file_.string() + ".part"),
       stream_(std::fopen(part_.c_str(), old == Old::kept ? "abe" : "wb")) {
     if (!stream_) fail_errno(part_);
-    if (old == Old::kept && flock(fileno(stream_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-        fail(part_, "is in use by another process");
+    if (old == Old::removed) return;
+    const bool locked = flock(fileno(stream_.get()), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    // Until it was locked another process may have finished it and given it its name.
+    struct stat ours {};
+    struct stat there {};
+    const bool same = fstat(fileno(stream_.get()), &ours) == 0 && stat(part_.c_str(), &there) == 0 &&
+                      ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+    if (!locked || !same) fail(part_, "is in use by another process");
 }
 
 void PartFile::cut(std::uintmax_t size) {
@@ -42,16 +49,21 @@ void PartFile::write(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stream) != text.size() || std::fflush(stream) != 0) fail_errno(part_);
 }
 
-void PartFile::close() {
+void PartFile::store() {
     if (fsync(fileno(stream_.get())) != 0 && errno != EINVAL) fail_errno(part_);  // a pipe or a device has no disk
+}
+
+void PartFile::close() {
+    store();
     if (std::fclose(stream_.release()) != 0) fail_errno(part_);
 }
 
 void PartFile::put_in_place() {
-    if (stream_) close();
+    if (stream_) store();
     std::error_code code;
     fs::rename(part_, file_, code);
     if (code) fail(file_, fmt::format("cannot be written: {}", code.message()));
+    stream_.reset();  // only now: a lock ends with it
 }
 
 void write_whole(const fs::path& file, std::string_view text) {

@@ -32,13 +32,14 @@ public:
     void write(std::string_view text);
     /// To the disk; nothing can be written any more.
     void close();
-    /// Closes the file where it is open, and gives it its name.
+    /// To the disk where it is open; gives the file its name, then closes it.
     void put_in_place();
 
 private:
     struct Close {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
+    void store();
 
     std::filesystem::path file_, part_;
     std::unique_ptr<std::FILE, Close> stream_;

@@ -1,6 +1,7 @@
 #include "study_records.hpp"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <type_traits>
 
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "input_file.hpp"
+#include "json_numbers.hpp"
 #include "nesting.hpp"
 #include "results_folder.hpp"
 #include "nsma/orbit/kernel.hpp"
@@ -24,23 +26,25 @@ constexpr int deepest_records = 16;
 constexpr std::size_t most_records_bytes = std::size_t{1} << 30U;
 
 // The members of every record, by name: visited to write them and to read them.
+template <class Value, class Wanted>
+concept Record = std::is_same_v<std::remove_const_t<Value>, Wanted>;
 
-template <class Visit>
-void members(Visit& visit, Pattern& record) {
+template <class Visit, Record<Pattern> Of>
+void members(Visit& visit, Of& record) {
     visit("cells", record.cells);
     visit("free_steps", record.free_steps);
     visit("contact_steps", record.contact_steps);
 }
 
-template <class Visit>
-void members(Visit& visit, Spread& record) {
+template <class Visit, Record<Spread> Of>
+void members(Visit& visit, Of& record) {
     visit("median", record.median);
     visit("low", record.low);
     visit("high", record.high);
 }
 
-template <class Visit>
-void members(Visit& visit, MethodRuns& record) {
+template <class Visit, Record<MethodRuns> Of>
+void members(Visit& visit, Of& record) {
     visit("pattern", record.pattern);
     visit("size", record.size);
     visit("method", record.method);
@@ -53,9 +57,12 @@ void members(Visit& visit, MethodRuns& record) {
     visit("iterations", record.iterations);
 }
 
-template <class Visit>
-void members(Visit& visit, ProgramRecord& record) {
-    members(visit, static_cast<MethodRuns&>(record));
+MethodRuns& base(MethodRuns& record) { return record; }
+const MethodRuns& base(const MethodRuns& record) { return record; }
+
+template <class Visit, Record<ProgramRecord> Of>
+void members(Visit& visit, Of& record) {
+    members(visit, base(record));
     visit("setting", record.setting);
     visit("warm", record.warm);
     visit("seconds", record.seconds);
@@ -64,9 +71,9 @@ void members(Visit& visit, ProgramRecord& record) {
     visit("error", record.error);
 }
 
-template <class Visit>
-void members(Visit& visit, StabilityRecord& record) {
-    members(visit, static_cast<MethodRuns&>(record));
+template <class Visit, Record<StabilityRecord> Of>
+void members(Visit& visit, Of& record) {
+    members(visit, base(record));
     visit("map", record.map);
     visit("column", record.column);
     visit("difficulty", record.difficulty);
@@ -75,8 +82,8 @@ void members(Visit& visit, StabilityRecord& record) {
     visit("seconds", record.seconds);
 }
 
-template <class Visit>
-void members(Visit& visit, KernelRecord& record) {
+template <class Visit, Record<KernelRecord> Of>
+void members(Visit& visit, Of& record) {
     visit("pattern", record.pattern);
     visit("method", record.method);
     visit("seconds", record.seconds);
@@ -85,8 +92,8 @@ void members(Visit& visit, KernelRecord& record) {
     visit("error", record.error);
 }
 
-template <class Visit>
-void members(Visit& visit, MarchRecord& record) {
+template <class Visit, Record<MarchRecord> Of>
+void members(Visit& visit, Of& record) {
     visit("cells", record.cells);
     visit("method", record.method);
     visit("setting", record.setting);
@@ -97,8 +104,8 @@ void members(Visit& visit, MarchRecord& record) {
     visit("contact_error", record.contact_error);
 }
 
-template <class Visit>
-void members(Visit& visit, DriftRecord& record) {
+template <class Visit, Record<DriftRecord> Of>
+void members(Visit& visit, Of& record) {
     visit("cells", record.cells);
     visit("method", record.method);
     visit("setting", record.setting);
@@ -108,8 +115,8 @@ void members(Visit& visit, DriftRecord& record) {
     visit("seconds", record.seconds);
 }
 
-template <class Visit>
-void members(Visit& visit, ToleranceRecord& record) {
+template <class Visit, Record<ToleranceRecord> Of>
+void members(Visit& visit, Of& record) {
     visit("pattern", record.pattern);
     visit("method", record.method);
     visit("tolerance", record.tolerance);
@@ -117,8 +124,8 @@ void members(Visit& visit, ToleranceRecord& record) {
     visit("expected", record.expected);
 }
 
-template <class Visit>
-void members(Visit& visit, AccuracyResults& records) {
+template <class Visit, Record<AccuracyResults> Of>
+void members(Visit& visit, Of& records) {
     visit("programs", records.programs);
     visit("kernels", records.kernels);
     visit("marches", records.marches);
@@ -127,8 +134,8 @@ void members(Visit& visit, AccuracyResults& records) {
     visit("tolerances", records.tolerances);
 }
 
-template <class Visit>
-void members(Visit& visit, Slope& record) {
+template <class Visit, Record<Slope> Of>
+void members(Visit& visit, Of& record) {
     visit("kind", record.kind);
     visit("right", record.right);
     visit("left", record.left);
@@ -137,23 +144,23 @@ void members(Visit& visit, Slope& record) {
     visit("reason", record.reason);
 }
 
-template <class Visit>
-void members(Visit& visit, Price& record) {
+template <class Visit, Record<Price> Of>
+void members(Visit& visit, Of& record) {
     visit("parameter", record.parameter);
     visit("steps", record.steps);
     visit("active", record.active);
     visit("slope", record.slope);
 }
 
-template <class Visit>
-void members(Visit& visit, OrbitDerivative& record) {
+template <class Visit, Record<OrbitDerivative> Of>
+void members(Visit& visit, Of& record) {
     visit("parameter", record.parameter);
     visit("beta", record.slope.beta);
     visit("reason", record.slope.reason);
 }
 
-template <class Visit>
-void members(Visit& visit, OptimumRecord& record) {
+template <class Visit, Record<OptimumRecord> Of>
+void members(Visit& visit, Of& record) {
     visit("pattern", record.orbit.kernel.pattern);
     visit("beta", record.orbit.beta);
     visit("objective", record.objective);
@@ -169,8 +176,8 @@ void members(Visit& visit, OptimumRecord& record) {
     visit("derivatives", record.derivatives);
 }
 
-template <class Visit>
-void members(Visit& visit, IntervalRecord& record) {
+template <class Visit, Record<IntervalRecord> Of>
+void members(Visit& visit, Of& record) {
     visit("pattern", record.pattern);
     visit("least", record.least);
     visit("greatest", record.greatest);
@@ -183,8 +190,8 @@ void members(Visit& visit, IntervalRecord& record) {
     visit("frequency_by_gap_difference", record.frequency_by_gap_difference);
 }
 
-template <class Visit>
-void members(Visit& visit, CurveRecord& record) {
+template <class Visit, Record<CurveRecord> Of>
+void members(Visit& visit, Of& record) {
     visit("pattern", record.pattern);
     visit("relaxed", record.relaxed);
     visit("amount", record.amount);
@@ -197,16 +204,16 @@ void members(Visit& visit, CurveRecord& record) {
     visit("objective", record.objective);
 }
 
-template <class Visit>
-void members(Visit& visit, AblationRecord& record) {
+template <class Visit, Record<AblationRecord> Of>
+void members(Visit& visit, Of& record) {
     visit("pattern", record.pattern);
     visit("kernel_dimension", record.kernel_dimension);
     visit("kind", record.kind);
     visit("survives", record.survives);
 }
 
-template <class Visit>
-void members(Visit& visit, SensitivitySummary& record) {
+template <class Visit, Record<SensitivitySummary> Of>
+void members(Visit& visit, Of& record) {
     visit("patterns", record.patterns);
     visit("admissible", record.admissible);
     visit("optima", record.optima);
@@ -221,19 +228,24 @@ void members(Visit& visit, SensitivitySummary& record) {
     visit("interrupted", record.interrupted);
 }
 
+template <class Visit, Record<SensitivityRecords> Of>
+void members(Visit& visit, Of& records) {
+    visit("optima", records.optima);
+    visit("intervals", records.intervals);
+    visit("curves", records.curves);
+    visit("ablations", records.ablations);
+    visit("summary", records.summary);
+}
+
 // Records and the objective that the scene had.
 struct Sensitivity {
     Objective objective = Objective::least_shock;
     SensitivityRecords records;
 };
-template <class Visit>
-void members(Visit& visit, Sensitivity& study) {
+template <class Visit, Record<Sensitivity> Of>
+void members(Visit& visit, Of& study) {
     visit("scene_objective", study.objective);
-    visit("optima", study.records.optima);
-    visit("intervals", study.records.intervals);
-    visit("curves", study.records.curves);
-    visit("ablations", study.records.ablations);
-    visit("summary", study.records.summary);
+    visit("records", study.records);
 }
 
 template <class Value>
@@ -248,12 +260,12 @@ struct Writer {
     Json json = Json::object();
 
     template <class Value>
-    void operator()(const char* name, Value& value) {
+    void operator()(const char* name, const Value& value) {
         json[name] = json_of(value);
     }
 
     template <class Value>
-    static Json json_of(Value& value) {
+    static Json json_of(const Value& value) {
         if constexpr (std::is_same_v<Value, double>) {
             return std::isfinite(value) ? Json(value) : Json(fmt::format("{}", value));
         } else if constexpr (std::is_enum_v<Value>) {
@@ -264,7 +276,7 @@ struct Writer {
             return value ? json_of(*value) : Json();
         } else if constexpr (List<Value>) {
             Json list = Json::array();
-            for (auto& item : value) list.push_back(json_of(item));
+            for (const auto& item : value) list.push_back(json_of(item));
             return list;
         } else {
             Writer writer;
@@ -273,6 +285,18 @@ struct Writer {
         }
     }
 };
+
+double not_finite(const std::string& word) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (word == "inf" || word == "-inf") return word == "inf" ? infinity : -infinity;
+    if (word != "nan") throw std::invalid_argument("number");
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+constexpr Slope::Kind last_of(Slope::Kind) { return Slope::Kind::refused; }
+constexpr Parameter last_of(Parameter) { return Parameter::energy; }
+constexpr Objective last_of(Objective) { return Objective::max_energy; }
+constexpr PatternKind last_of(PatternKind) { return pattern_kinds.back(); }
 
 // The inverse. Throws nlohmann's exceptions and std::exception where the JSON is of other records.
 struct Reader {
@@ -286,10 +310,14 @@ struct Reader {
     template <class Value>
     static void read(const Json& from, Value& value) {
         if constexpr (std::is_same_v<Value, double>) {
-            value = from.is_string() ? std::stod(from.get<std::string>()) : from.get<double>();
+            value = from.is_string() ? not_finite(from.get<std::string>()) : from.get<double>();
         } else if constexpr (std::is_enum_v<Value>) {
-            value = static_cast<Value>(from.get<int>());
-        } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+            const int number = whole_number(from);
+            if (number < 0 || number > static_cast<int>(last_of(Value{}))) throw std::invalid_argument("name");
+            value = static_cast<Value>(number);
+        } else if constexpr (std::is_same_v<Value, int>) {
+            value = whole_number(from);
+        } else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, std::string>) {
             value = from.get<Value>();
         } else if constexpr (requires { value.has_value(); }) {
             value.reset();
@@ -341,17 +369,25 @@ Records records_in(const fs::path& file) {
 }  // namespace
 
 void write_records(const fs::path& folder, const AccuracyResults& results) {
-    AccuracyResults copy = results;
-    write(folder / accuracy_records_name, Writer::json_of(copy));
+    write(folder / accuracy_records_name, Writer::json_of(results));
 }
 
 void write_records(const fs::path& folder, const Scene& scene, const SensitivityRecords& records) {
-    Sensitivity copy{scene.objective, records};
-    write(folder / sensitivity_records_name, Writer::json_of(copy));
+    auto study = Json::object();
+    study["scene_objective"] = Writer::json_of(scene.objective);
+    study["records"] = Writer::json_of(records);
+    write(folder / sensitivity_records_name, std::move(study));
 }
 
 AccuracyResults read_accuracy_records(const fs::path& folder) {
-    return records_in<AccuracyResults>(folder / accuracy_records_name);
+    constexpr int most_columns = 1000;
+    const fs::path file = folder / accuracy_records_name;
+    auto results = records_in<AccuracyResults>(file);
+    for (const StabilityRecord& record : results.stability) {
+        if (record.column < 0 || record.column >= most_columns)
+            fail(file, fmt::format("column: expected 0..{}, got {}", most_columns - 1, record.column));
+    }
+    return results;
 }
 
 SensitivityRecords read_sensitivity_records(const fs::path& folder, Scene& scene) {
@@ -359,8 +395,18 @@ SensitivityRecords read_sensitivity_records(const fs::path& folder, Scene& scene
     auto study = records_in<Sensitivity>(file);
     scene.objective = study.objective;
     for (OptimumRecord& record : study.records.optima) {
+        const Pattern pattern = record.orbit.kernel.pattern;
         try {
-            record.orbit = make_orbit(scene.bar, exact_kernel(record.orbit.kernel.pattern), record.orbit.beta);
+            validate(pattern);
+            if (pattern.cells != scene.mesh.cells || record.orbit.beta.size() != kernel_dimension(pattern))
+                throw std::invalid_argument("another mesh or number of amplitudes");
+            record.orbit = make_orbit(scene.bar, exact_kernel(pattern), record.orbit.beta);
+            for (const Price& price : record.prices) {
+                for (const int step : price.steps) {
+                    if (step < 0 || step > pattern.period_steps())
+                        throw std::invalid_argument(fmt::format("a price at step {}", step));
+                }
+            }
         } catch (const std::invalid_argument& error) {
             fail(file, fmt::format("expected orbits of the scene, got one with {}", error.what()));
         }

@@ -69,7 +69,7 @@ private:
     void say_open() {
         const double percent = answer_.optimality ? 100 * answer_.optimality->gap : 100.0;
         std::ostringstream text;
-        text << std::setprecision(percent < 10 ? 2 : 3) << "the orbit is not proved the best, gap " << percent << " %";
+        text << std::setprecision(percent < 10 ? 2 : 3) << "the orbit is not proved the best; gap " << percent << " %";
         answer_.reason += (answer_.reason.empty() ? "" : "; ") + text.str();
     }
 
@@ -200,7 +200,7 @@ private:
             if (best->origin != Candidate::Origin::solver && !search.a_solver_came_to(*best)) {
                 // The kept orbit is better than what any solver holds: they do not agree about it.
                 if (answer_.agreement != Agreement::both_failed) answer_.agreement = Agreement::different_optimum;
-                answer_.reason = "no solver came to the best orbit known, found by the " + best->method;
+                answer_.reason = "no solver came to the best orbit known; found by the " + best->method;
             }
             return;
         }

@@ -33,6 +33,7 @@ TEST_P(Reading, FindsTheLargestForce) {
         const auto number = [&line](const std::string& key) {
             return std::stod(line.substr(line.find("\"" + key + "\":") + key.size() + 3));
         };
+        if (line.find("\"level\":null") != std::string::npos) continue;
         const double frequency = number("frequency_hz");
         least = std::min(least, frequency);
         greatest = std::max(greatest, frequency);
@@ -44,8 +45,8 @@ TEST_P(Reading, FindsTheLargestForce) {
     }
     std::array<char, 200> expected{};
     std::snprintf(expected.data(), expected.size(),
-                  "%d orbits from %.6g to %.6g Hz\nlargest force %.6g N at %.6g J, %.6g Hz\n", orbits, least, greatest,
-                  largest, energy, frequency_there);
+                  "orbits at a level: %d, %.6g to %.6g Hz\nlargest force %.6g N at %.6g J, %.6g Hz\n", orbits, least,
+                  greatest, largest, energy, frequency_there);
     EXPECT_EQ(shell(std::string(name) + " '" NSMA_SOURCE "/problems/" + program + "' '" + path("rod") + "'"), 0)
         << process::contents(folder_ / ".err");
     EXPECT_EQ(process::contents(folder_ / ".out"), expected.data());

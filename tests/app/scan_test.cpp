@@ -166,7 +166,8 @@ TEST_F(Proofs, WhatAnotherRunLeftIsNotGoneOnWith) {
     expect_other(two, prove({"--cells", "5"}), "1: expected a certificate of (5, 1, 1, 1), got (6, 1, 1, 1))");
     expect_other(two, prove({"--gap", "-1"}), "1: expected a certificate of (6, 1, 1, -1), got (6, 1, 1, 1))");
     expect_other(lines[1] + "\n" + lines[0] + "\n", prove(), "1: expected a certificate of (6, 1, 1, 1), got (6, ");
-    expect_other("hello\n" + two, prove(), "1: expected one JSON object a line");
+    write("proofs.jsonl.part", "hello\n" + two);
+    expect_kept(part_, prove({"--resume"}), "is damaged (line 1: expected one JSON object a line");
     const Words one{"prove", scene_, "--free", "1", "--contact", "1", "--out", proofs_};
     expect_other(two, one, "2: expected no more certificates, got ");
     std::string forged = lines[0];

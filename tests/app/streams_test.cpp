@@ -246,12 +246,13 @@ TEST_F(Surroundings, AnOrbitIsDrawnWhereItIsAskedFor) {
     EXPECT_EQ(one.exit_code, 0) << one.err;
     EXPECT_NE(one.out.find("energy        6 J = 12 E_g"), std::string::npos) << one.out;  // E_g = 1/2 J
     for (const char* name :
-         {"one/orbit.json", "one/curves.csv", "one/charts/orbit-motion.svg", "one/charts/orbit-fields.png"})
+         {"one/orbit.json", "one/orbit-curves.csv", "one/charts/orbit-motion.svg", "one/charts/orbit-fields.png"})
         EXPECT_TRUE(has(name)) << name;
-    EXPECT_EQ(process::lines_of(contents(path("one/curves.csv"))).size(), 1U + 21U);  // n = 0..n_T
+    EXPECT_EQ(process::lines_of(contents(path("one/orbit-curves.csv"))).size(), 1U + 21U);  // n = 0..n_T
     ASSERT_EQ(run({"sweep", scene_, "--out", path("sweep"), "--quiet", "--cells", "6", "--gap", "1"}).exit_code, 0);
-    EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "16,4,11"}).exit_code, 0);
-    EXPECT_TRUE(has("sweep/charts/orbit-16-4-12-motion.png"));  // the level that is nearest
+    EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "16,4,11.95"}).exit_code, 0);
+    EXPECT_TRUE(has("sweep/charts/orbit-16-4-12-motion.png"));  // as one who rounds would have it
+    expect_refused({"plot", path("sweep"), "--orbit", "16,4,11"}, "got those at the least, 9 E_g, 12 E_g");
     EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "16,4"}).exit_code, 0);
     EXPECT_TRUE(has("sweep/charts/orbit-16-4-fields.svg"));
     EXPECT_EQ(run({"plot", path("sweep"), "--orbit", "17,4"}).exit_code, 2);
@@ -270,7 +271,7 @@ TEST_F(Surroundings, EveryFolderIsExportedAndPlotted) {
     ASSERT_EQ(run(with({"sensitivity", scene_, "--out", path("both"), "--quiet"}, one)).exit_code, 0);
     ASSERT_EQ(run({"accuracy", scene_, "--out", path("accuracy"), "--quick", "--quiet"}).exit_code, 0);
     const std::vector<std::pair<std::string, Words>> folders{
-        {"orbit", {"curves.csv", "charts/orbit-motion"}},
+        {"orbit", {"orbit-curves.csv", "charts/orbit-motion"}},
         {"both", {"levels.csv", "prices.csv", "charts/overview", "charts/binding"}},
         {"accuracy", {"programs.csv", "winners.csv", "charts/accuracy-programs"}}};
     for (const auto& [folder, files] : folders) {

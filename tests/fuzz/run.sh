@@ -30,7 +30,7 @@ cmake --preset fuzz
 cmake --build --preset fuzz
 
 say "fuzzing for $seconds s"
-for name in scene certificate store command_line; do
+for name in scene certificate store study command_line; do
     mkdir -p "build/fuzz/corpus/$name"
     seeds=""
     [ "$name" = scene ] && seeds=problems
@@ -41,7 +41,7 @@ for name in scene certificate store command_line; do
     eval "process_$name=\$!"
 done
 failed=""
-for name in scene certificate store command_line; do
+for name in scene certificate store study command_line; do
     eval "wait \$process_$name" || failed="$failed $name"
     tail -n 1 "build/fuzz/$name.log"
 done

@@ -182,7 +182,8 @@ TEST_F(ChartsTest, TitlesCannotBreakTheScript) {
     text.replace(text.find("A sample"), 8, "It's 50% {x}_y $z `ls` \\\\ plot # µ");
     sweep(text);
     EXPECT_EQ(error_of([this] { (void)draw(); }), "no error");
-    EXPECT_THAT(chart("frequency-energy.svg"), HasSubstr("It's 50% {x}_y $z `ls`"));
+    for (const char* name : {"frequency-energy.svg", "overview.svg", "orbits.svg", "space-time.svg"})
+        EXPECT_THAT(chart(name), HasSubstr("It's 50% {x}_y $z `ls`")) << name;
 }
 
 TEST_F(ChartsTest, AFailingGnuplotIsOneLine) {
@@ -194,6 +195,8 @@ TEST_F(ChartsTest, AFailingGnuplotIsOneLine) {
 }
 
 TEST_F(ChartsTest, AMissingGnuplotIsOneLine) {
+    std::filesystem::create_directory(path / "charts");
+    sample::write(path / "charts" / "any.svg", "of a run before");
     const std::string before = std::getenv("PATH");
     setenv("PATH", path.c_str(), 1);
     const std::string message = error_of([this] {
@@ -201,6 +204,7 @@ TEST_F(ChartsTest, AMissingGnuplotIsOneLine) {
     });
     setenv("PATH", before.c_str(), 1);
     EXPECT_THAT(message, HasSubstr("install gnuplot-nox"));
+    EXPECT_EQ(chart("any.svg"), "of a run before");
 }
 
 TEST(ScaledUnit, PicksTheReadablePrefix) {

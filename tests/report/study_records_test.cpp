@@ -118,8 +118,20 @@ TEST_F(StudyRecordsTest, AnOrbitComesBackFromItsAmplitudes) {
     EXPECT_EQ(stored.level, answer.level);
     EXPECT_NEAR(stored.energy / *answer.energy, 1.0, 1e-14);  // alpha = beta u/dt is rounded, once each way
     EXPECT_LT((stored.orbit.beta - answer.orbit->beta).norm() / answer.orbit->beta.norm(), 1e-14);
-    const std::string curves = sample::read(path / "curves.csv");
+    const std::string curves = sample::read(path / "orbit-curves.csv");
     EXPECT_EQ(curves.substr(0, curves.find('\n')), "free_steps,contact_steps,level,t_s,x_m,force_n");
+    const std::string whole = sample::read(path / orbit_json_name);
+    auto json = nlohmann::json::parse(whole);
+    json["alpha"][0] = 1.01 * json["alpha"][0].get<double>();
+    sample::write(path / orbit_json_name, json.dump());
+    EXPECT_THAT(error_of([this] { (void)read_orbit_folder(path); }), HasSubstr("not of this orbit"));
+    for (const auto& cells : {nlohmann::json(1e300), nlohmann::json(4294967316), nlohmann::json(19)}) {
+        json = nlohmann::json::parse(whole);
+        json["cells"] = cells;
+        sample::write(path / orbit_json_name, json.dump());
+        EXPECT_THAT(error_of([this] { (void)read_orbit_folder(path); }), HasSubstr("orbit.json: expected the orbit"));
+    }
+    sample::write(path / orbit_json_name, whole);
     edit(orbit_json_name, "\"alpha\"", "\"beta\"");
     EXPECT_THAT(error_of([this] { (void)read_orbit_folder(path); }), HasSubstr("orbit.json: expected the orbit"));
 }

@@ -105,8 +105,8 @@ TEST(Tables, ScanTableIsAligned) {
     open.interval = EnergyInterval{};
     open.interval.least = 9.0;
     open.interval.unbounded = true;
-    std::istringstream lines(scan_table_header(Bar{}) + "\n" + scan_table_row(admissible_record()) + "\n" +
-                             scan_table_row(open));
+    std::istringstream lines(scan_table_header(Bar{}) + "\n" + scan_table_row(Bar{}, admissible_record()) + "\n" +
+                             scan_table_row(Bar{}, open));
     std::size_t width = 0;
     int count = 0;
     for (std::string line; std::getline(lines, line); ++count) {
@@ -114,7 +114,7 @@ TEST(Tables, ScanTableIsAligned) {
         EXPECT_EQ(line.size(), width) << line;
     }
     EXPECT_EQ(count, 3);
-    EXPECT_THAT(scan_table_row(open), testing::HasSubstr("inf"));
+    EXPECT_THAT(scan_table_row(Bar{}, open), testing::HasSubstr("inf"));
 }
 
 TEST(Tables, SummaryNamesEveryCount) {

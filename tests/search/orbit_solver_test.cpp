@@ -374,7 +374,7 @@ TEST(OrbitSolver, StarvedSolversStillGiveAnOrbitAndSaySo) {
     EXPECT_EQ(answer.agreement, Agreement::both_failed);
     expect_sound(answer);
     EXPECT_EQ(answer.method, "closed-form");
-    EXPECT_EQ(answer.reason, "no solver came to the best orbit known, found by the closed-form");
+    EXPECT_EQ(answer.reason, "no solver came to the best orbit known; found by the closed-form");
     for (const auto& run : answer.solvers) EXPECT_FALSE(run.usable);
 }
 

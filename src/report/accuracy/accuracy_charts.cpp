@@ -133,7 +133,8 @@ Chart program_chart(const std::vector<ProgramRecord>& records) {
     }
     for (std::size_t k = 0; k < sizes.size(); ++k) {
         const double left = k % 2 == 0 ? 0.10 : 0.59;
-        const double top = 1 - (75 + row_height * static_cast<double>(k / 2)) / chart.height;
+        const std::size_t row = k / 2;
+        const double top = 1 - (75 + row_height * static_cast<double>(row)) / chart.height;
         chart.panels.push_back({.frame = Frame{left, left + 0.39, top - 320.0 / chart.height, top},
                                 .title = fmt::format("m = {}", sizes[k]),
                                 .x = {.label = k + 2 < sizes.size() ? "" : "CPU time of a run (s)",
@@ -168,7 +169,7 @@ Chart method_chart(const char* name, const std::string& title, const std::vector
     const double pitch = 1.0 / static_cast<double>(panels.size());
     for (std::size_t k = 0; k < panels.size(); ++k) {
         const auto place = static_cast<double>(k);
-        panels[k].frame = Frame{pitch * place + 0.095, pitch * (place + 1) - 0.02, 0.38, 0.88};
+        panels[k].frame = Frame{pitch * place + 0.12, pitch * (place + 1) - 0.015, 0.38, 0.88};
     }
     std::vector<Curve> entries;
     for (std::size_t i = 0; i < methods.size(); ++i) {

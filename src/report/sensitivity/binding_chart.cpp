@@ -128,7 +128,7 @@ Chart binding_chart(const Scene& scene, const OptimumRecord& optimum) {
                              {chart.add("tip", motion) + " using 1:2", "lines lw 2 lc rgb '#000000'"}}};
     Panel savings{.frame = Frame{0.12, 0.97, 0.24, 0.50},
                   .x = {units.time_label, range(0.0, period), "format '%g'"},
-                  .y = {"saved [%]", range(0.0, highest > 0 ? 1.15 * highest : 1.0),
+                  .y = {"objective saved (%)", range(0.0, highest > 0 ? 1.15 * highest : 1.0),
                         fmt::format("{}", round_below((highest > 0 ? highest : 1.0) / 3.0))},
                   .key = "at screen 0.545, screen 0.11 center top vertical maxrows 3 samplen 3",
                   .settings = fmt::format("set boxwidth {}\nset label {} at graph 0.01, graph 1.08 left noenhanced "

@@ -118,10 +118,10 @@ void draw_linear_modes(Diagram& diagram, int gap_sign) {
         const double end = free && gap_sign > 0 ? grazing_energy(n) : energy.hi;
         if (end > energy.lo) (free ? odd : even) += point(energy.lo, n) + point(std::min(end, energy.hi), n) + "\n";
         if (free && gap_sign > 0 && end > energy.lo && end < energy.hi) grazing += point(end, n);
-        diagram.panel.settings += fmt::format(
-            "set label '{}ω_1' at graph 1, first {} right offset -0.5,0.6 textcolor rgb "
-            "'#888888'\n",
-            n == 1 ? "" : std::to_string(n), n);
+        const bool ends = end < energy.hi;  // its name stands behind it, else above its end
+        diagram.panel.settings += fmt::format("set label '{}ω_1' at first {}, first {} {} textcolor rgb '#888888'\n",
+                                              n == 1 ? "" : std::to_string(n), ends ? end : energy.hi, n,
+                                              ends ? "left offset 1.2,0" : "right offset -0.5,0.6");
     }
     diagram.draw("linear-free-fixed", odd, "1:2", "lines lw 1 dt 2 lc rgb '#888888'", "linear, free end");
     diagram.draw("grazing", grazing, "1:2", "points pt 3 ps 1.2*mark lw 1.5 lc rgb '#555555'",
@@ -151,7 +151,7 @@ void add_physical_axes(Diagram& diagram, const Bar& bar) {
 }
 
 void draw_modes(Diagram& diagram, int gap_sign) {
-    const char* place = gap_sign == 0  ? "left offset 0.8,0.8"
+    const char* place = gap_sign == 0  ? "left offset 0.8,-0.9"
                         : gap_sign > 0 ? "right offset -1.2,0.7"
                                        : "right offset -1.0,-0.7";
     std::string rows, limits;
@@ -222,12 +222,14 @@ void draw_records(Diagram& diagram, const StoredSweep& sweep) {
 
 void draw_choice(Diagram& diagram, const OrbitChoice& choice) {
     std::string marks;
+    diagram.panel.settings += "set style textbox opaque noborder fillcolor rgb '#ffffff' margins 0.3,0.3\n";
     for (std::size_t i = 0; i < choice.orbits.size(); ++i) {
         const StoredOrbit& stored = *choice.orbits[i];
         const double frequency = stored.orbit.kernel.pattern.frequency_ratio();
         marks += point(stored.energy, frequency);
-        diagram.panel.settings += fmt::format("set label '{}' at first {},{} left offset 0.9,-0.7 front\n", roman(i),
-                                              stored.energy, frequency);
+        diagram.panel.settings +=
+            fmt::format("set label '{}' at first {},{} right offset -0.9,0.7 front font ',15' boxed\n", roman(i),
+                        stored.energy, frequency);
     }
     diagram.draw("orbits-drawn", marks, "1:2", "points pt 6 ps 2*mark lw 2 lc rgb '#000000'", "orbit shown");
 }

@@ -97,16 +97,17 @@ Panel tip_panel(Chart& chart, const Scene& scene, const OrbitChoice& choice, con
     const Units units = units_of(bar, periods_shown * extent.period, extent.tip);
     const double at_wall = bar.gap * units.length.factor;
     const double head = 0.12 * std::max((bar.gap - extent.lowest) * units.length.factor, 1e-9);
-    Panel panel{.frame = frame,
-                .x = {units.time_label,
-                      range(0.0, periods_shown * extent.period * bar.travel_time() * units.time.factor), "format '%g'"},
-                .y = {units.tip_label, range(extent.lowest * units.length.factor - head, at_wall + head)},
-                .key = fmt::format("at screen {}, screen {} center top vertical maxrows 3 samplen 4 font ',12'",
-                                   (frame.left + frame.right) / 2, frame.bottom - 0.155),
-                .settings = (choice.orbits.size() == 1 ? contact_shade(choice.orbits.front()->orbit, units, false)
-                                                       : std::string()) +
-                            wall(at_wall, at_wall + 0.5 * head, "wall, x = d"),
-                .curves = {{fmt::format("{}", at_wall), "lines lw 1.5 lc rgb '#333333'"}}};
+    const double shown = periods_shown * extent.period * bar.travel_time() * units.time.factor;
+    Panel panel{
+        .frame = frame,
+        .x = {units.time_label, range(0.0, shown), fmt::format("{} format '%g'", 1.0 / round_below(6.0 / shown))},
+        .y = {units.tip_label, range(extent.lowest * units.length.factor - head, at_wall + head)},
+        .key = fmt::format("at screen {}, screen {} center top vertical maxrows 3 samplen 4 font ',12'",
+                           (frame.left + frame.right) / 2, frame.bottom - 0.155),
+        .settings =
+            (choice.orbits.size() == 1 ? contact_shade(choice.orbits.front()->orbit, units, false) : std::string()) +
+            wall(at_wall, at_wall + 0.5 * head, "wall, x = d"),
+        .curves = {{fmt::format("{}", at_wall), "lines lw 1.5 lc rgb '#333333'"}}};
     for (std::size_t i = 0; i < choice.orbits.size(); ++i) {
         const std::string rows = tip_rows(choice.orbits[i]->orbit, units);
         draw_orbit(panel, chart.add(fmt::format("tip-{}", i + 1), rows), i);

@@ -68,8 +68,8 @@ Chart space_time_chart(const Scene& scene, const StoredOrbit& stored, const std:
     const Fields fields = wave_fields(stored.orbit);
     Chart chart{.name = name,
                 .data = fmt::format("# {}: rows over one period, columns over the bar\n", scene.title),
-                .settings = R"(# negative blue, nothing white, positive brown; in grey both grow dark, negative more
-set palette defined (0 '#08306b', 0.2 '#2b6cb0', 0.4 '#a9cce3', 0.5 '#ffffff', 0.6 '#f5d7a1', 0.8 '#d9822b', 1 '#a65414')
+                .settings = R"(# negative blue, nothing white, positive orange; in grey only what is negative grows dark
+set palette defined (0 '#08306b', 0.25 '#3f88c5', 0.42 '#c6dbef', 0.5 '#ffffff', 0.58 '#fde6c8', 0.75 '#f7b267', 1 '#e8892b')
 )",
                 .title = fmt::format("{}: {}", shortened(scene.title, 80), orbit_label(stored))};
     const auto add = [&](const char* block, const Eigen::MatrixXd& field, const char* unit_name, const char* symbol,
@@ -84,11 +84,12 @@ set palette defined (0 '#08306b', 0.2 '#2b6cb0', 0.4 '#a9cce3', 0.5 '#ffffff', 0
              .y = {first ? units.time_label : "", range(0.0, period), first ? "format '%g'" : "format ''"},
              .settings = fmt::format(
                  "set colorbox horizontal user origin screen {}, screen 0.115 size screen 0.37, screen 0.025\n"
-                 "set cblabel '{} ({})' offset 0,0.4\nset cbrange [{}:{}]\nset cbtics {}\nunset arrow\n"
+                 "set cblabel '{} ({})' offset 0,0.4\nset cbrange [{}:{}]\nset cbtics ({})\nunset arrow\n"
                  "set arrow from graph 1.015, first {} to graph 1.015, first {} nohead lw 6 lc rgb '#000000'\n"
                  "set label 'held end' at graph 0, graph 1.035 left\n"
                  "set label 'wall' at graph 1, graph 1.035 right\n{}",
-                 left, symbol, unit.unit, -bound, bound, 1.0 / round_below(5.0 / (2 * bound)), touch, period,
+                 left, symbol, unit.unit, -bound, bound, fmt::format("'{0:.3g}' {0}, 0, '{1:.3g}' {1}", -bound, bound),
+                 touch, period,
                  first ? std::string()
                        : fmt::format("set label 'contact' at graph 1.045, first {} left\n"
                                      "set label 'free' at graph 1.045, first {} left textcolor rgb '#555555'\n",

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "nsma/orbit/backbone.hpp"
+#include "report/bar_text.hpp"
+#include "report/one_line.hpp"
 #include "report/results_folder.hpp"
 
 namespace nsma {
@@ -37,34 +40,50 @@ int period_steps(const StoredOrbit* stored) { return stored->orbit.kernel.patter
 bool less_energy(const StoredOrbit* a, const StoredOrbit* b) { return a->energy < b->energy; }
 double distance(double a, double b) { return std::abs(std::log(a / b)); }
 
-/// Of orbits sorted by energy two levels of one pattern, as far from each other as may be seen, and an orbit of least
-/// energy far from both; empty where there are none.
+/// Of orbits sorted by energy the two levels of one pattern that are farthest apart and may still be seen beside each
+/// other, and an orbit of least energy apart from both; empty where there are none.
 Candidates two_levels_and_another(const Candidates& sorted) {
-    std::array<const StoredOrbit*, 2> levels{};
-    for (const StoredOrbit* lower : sorted) {
-        for (const StoredOrbit* upper : sorted) {
-            if (!lower->level || !upper->level || lower->orbit.kernel.pattern != upper->orbit.kernel.pattern) continue;
-            const double ratio = upper->energy / lower->energy;
-            if (ratio <= 1.0 || ratio > widest_ratio) continue;
-            if (levels[0] == nullptr || ratio > levels[1]->energy / levels[0]->energy) levels = {lower, upper};
+    std::map<std::pair<int, int>, Candidates> levels;
+    for (const StoredOrbit* orbit : sorted) {
+        const Pattern& pattern = orbit->orbit.kernel.pattern;
+        if (orbit->level) levels[{pattern.free_steps, pattern.contact_steps}].push_back(orbit);
+    }
+    std::array<const StoredOrbit*, 2> pair{};
+    double best = 1.0 + 1e-9;
+    for (const auto& [steps, orbits] : levels) {
+        std::size_t low = 0;
+        for (const StoredOrbit* upper : orbits) {
+            while (upper->energy > widest_ratio * orbits[low]->energy) ++low;
+            const double ratio = upper->energy / orbits[low]->energy;
+            if (ratio <= best) continue;
+            best = ratio;
+            pair = {orbits[low], upper};
         }
     }
-    if (levels[0] == nullptr) return {};
-    const StoredOrbit* other = nullptr;
-    const auto from_both = [&levels](const StoredOrbit* orbit) {
-        return std::min(distance(orbit->energy, levels[0]->energy), distance(orbit->energy, levels[1]->energy));
+    if (pair[0] == nullptr) return {};
+    // Of the orbits of least energy in reach of the two, so that none looks flat.
+    const double lo = pair[0]->energy / 2.0;
+    const double hi = 2.0 * pair[1]->energy;
+    const auto from_both = [&pair](const StoredOrbit* orbit) {
+        return std::min(distance(orbit->energy, pair[0]->energy), distance(orbit->energy, pair[1]->energy));
     };
+    const StoredOrbit* other = nullptr;
     for (const StoredOrbit* orbit : sorted) {
-        if (orbit->level || orbit->orbit.kernel.pattern == levels[0]->orbit.kernel.pattern) continue;
-        const double lo = std::min(orbit->energy, levels[0]->energy);
-        const double hi = std::max(orbit->energy, levels[1]->energy);
-        if (hi > widest_ratio * lo) continue;
+        if (orbit->level || orbit->orbit.kernel.pattern == pair[0]->orbit.kernel.pattern) continue;
+        if (orbit->energy < lo || orbit->energy > hi) continue;
         if (other == nullptr || from_both(orbit) > from_both(other)) other = orbit;
     }
     if (other == nullptr) return {};
-    Candidates chosen{levels[0], levels[1], other};
+    Candidates chosen{pair[0], pair[1], other};
     std::stable_sort(chosen.begin(), chosen.end(), less_energy);
     return chosen;
+}
+
+std::string energy_text(const StoredOrbit& stored, const Bar& bar) {
+    const char* const least = stored.level ? "" : "the least, ";
+    const std::string joules = si_text(stored.energy * bar.energy_unit(), "J");
+    if (bar.gap == 0) return least + joules;
+    return fmt::format("{}{:.6g} E_g{}", least, stored.energy, is_unit_bar(bar) ? "" : " = " + joules);
 }
 
 }  // namespace
@@ -113,17 +132,22 @@ std::vector<Chart> charts_of(const Scene& scene, const StoredOrbit& stored, cons
 
 std::vector<Chart> charts_of(const StoredSweep& sweep, const std::filesystem::path& folder, int free_steps,
                              int contact_steps, std::optional<double> level) {
+    constexpr double same = 0.01;  // of two energies, relative: who types one rounds it
     const StoredOrbit* found = nullptr;
+    std::string stored;
     for (const StoredOrbit& orbit : sweep.orbits) {
         const Pattern& pattern = orbit.orbit.kernel.pattern;
         if (pattern.free_steps != free_steps || pattern.contact_steps != contact_steps) continue;
+        stored += (stored.empty() ? "" : ", ") + energy_text(orbit, sweep.scene.bar);
         if (orbit.level.has_value() != level.has_value()) continue;
+        if (level && distance(*orbit.level, *level) > same) continue;
         if (found == nullptr || (level && distance(*orbit.level, *level) < distance(*found->level, *level)))
             found = &orbit;
     }
     if (found == nullptr) {
-        fail(folder, fmt::format("expected an orbit with r = {}, p = {}{}, got none in this sweep", free_steps,
-                                 contact_steps, level ? " at a level" : ""));
+        const std::string got = stored.empty() ? "none of this pattern" : shortened("those at " + stored, 300);
+        fail(folder, fmt::format("expected an orbit with r = {}, p = {}{}, got {}", free_steps, contact_steps,
+                                 level ? fmt::format(" at E = {:g}", *level) : " of least energy", got));
     }
     const std::string energy = found->level ? fmt::format("-{:.6g}", *found->level) : std::string();
     return charts_of(sweep.scene, *found, fmt::format("orbit-{}-{}{}", free_steps, contact_steps, energy));

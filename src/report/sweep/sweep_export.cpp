@@ -38,7 +38,7 @@ private:
 std::string open_time_text(const TimeSpent& spent, int starts) {
     constexpr double worth_mentioning = 10;
     if (spent.seconds < worth_mentioning || 2 * spent.open_seconds <= spent.seconds) return {};
-    const std::string where = fmt::format(
+    std::string where = fmt::format(
         "most of the time ({:.0f} of {:.0f} s) went to {} levels that stayed unproved: free patterns have "
         "many local optima",
         spent.open_seconds, spent.seconds, spent.open_levels);
@@ -92,8 +92,10 @@ Exported export_sweep(const SweepStore& store, const fs::path& folder, bool dist
     return {summary, fmt::format(fmt::runtime(line), folder.string()), span, spent};
 }
 
-void export_curves(const SweepStore& store, const fs::path& folder) {
-    PartFile file(folder / "curves.csv");
+void export_curves(const SweepStore& store, const fs::path& folder, bool asked) {
+    const fs::path curves = folder / "curves.csv";
+    if (std::error_code code; !asked && !fs::exists(curves, code)) return;
+    PartFile file(curves);
     file.write(curves_csv_header() + "\n");
     store.for_each([&](const WorkResult& result) {
         if (result.answer && result.answer->orbit)

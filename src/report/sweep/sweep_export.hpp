@@ -34,8 +34,9 @@ struct Exported {
 [[nodiscard]] Exported export_sweep(const SweepStore& store, const std::filesystem::path& folder,
                                     bool distinct = false);
 
-/// Writes curves.csv, the curves of every stored orbit in the scene's order.
-void export_curves(const SweepStore& store, const std::filesystem::path& folder);
+/// Writes curves.csv, the curves of every stored orbit in the scene's order; unless `asked` only where there is one,
+/// which would else be of other orbits.
+void export_curves(const SweepStore& store, const std::filesystem::path& folder, bool asked);
 
 /// A stored answer, as far as charts need it.
 struct StoredLevel {

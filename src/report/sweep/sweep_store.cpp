@@ -192,8 +192,9 @@ struct SweepStore::Implementation {
 
     void check(const StoreVersions& versions) const {
         const auto refuse = [&](const char* what, const std::string& stored, const std::string& now) {
-            fail(file, fmt::format("{}: expected {}, got a store of {}; choose another folder or run without --resume",
-                                   what, now, stored));
+            fail(file,
+                 fmt::format("{}: expected {}, got a store of {}; give the same options, or begin anew with --fresh",
+                             what, now, stored));
         };
         if (stored_format() != format) refuse("format of the store", stored_format(), format);
         expect_sound();

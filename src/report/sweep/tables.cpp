@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "report/bar_text.hpp"
 #include "report/csv.hpp"
 #include "report/record_values.hpp"
 
@@ -45,9 +46,8 @@ std::string csv_row(std::string_view columns, const NamedValues& values) {
     }
 }
 
-std::string terminal_number(const std::optional<double>& value) {
-    return value ? fmt::format("{:.6g}", *value) : std::string("-");
-}
+// Whether energies are shown in joules: of a bar with units, and where there is no E_g.
+bool in_physical_units(const Bar& bar) { return bar.gap == 0 || !is_unit_bar(bar); }
 
 }  // namespace
 
@@ -58,19 +58,24 @@ std::string scan_csv_row(const Bar& bar, const PatternRecord& record) {
 }
 
 std::string scan_table_header(const Bar& bar) {
-    const bool closed = bar.gap_sign() == 0;
-    return fmt::format("{:>8} {:>8} {:>8} {:>5} {:>10} {:>10}  {:<12} {:<8} {:>12} {:>12}", "free r", "contact p",
-                       "period", "m", "T/tau", "w/w1", "verdict", "kind", closed ? "E_min [J]" : "E_min/E_g",
-                       closed ? "E_max [J]" : "E_max/E_g");
+    const bool joules = in_physical_units(bar);
+    return fmt::format("{:>8} {:>8} {:>8} {:>5} {:>10} {:>10}{}  {:<12} {:<8} {:>12} {:>12}", "free r", "contact p",
+                       "period", "m", "T/tau", "w/w1", is_unit_bar(bar) ? "" : fmt::format(" {:>10}", "f [Hz]"),
+                       "verdict", "kind", joules ? "E_min [J]" : "E_min/E_g", joules ? "E_max [J]" : "E_max/E_g");
 }
 
-std::string scan_table_row(const PatternRecord& record) {
+std::string scan_table_row(const Bar& bar, const PatternRecord& record) {
     const Pattern& pattern = record.pattern;
-    return fmt::format("{:>8} {:>9} {:>8} {:>5} {:>10.6g} {:>10.6g}  {:<12} {:<8} {:>12} {:>12}", pattern.free_steps,
+    const auto energy = [&](const std::optional<double>& value) {
+        if (!value) return std::string("-");
+        return fmt::format("{:.6g}", in_physical_units(bar) ? *value * bar.energy_unit() : *value);
+    };
+    const double period = pattern.period_ratio() * bar.travel_time();
+    return fmt::format("{:>8} {:>9} {:>8} {:>5} {:>10.6g} {:>10.6g}{}  {:<12} {:<8} {:>12} {:>12}", pattern.free_steps,
                        pattern.contact_steps, pattern.period_steps(), record.kernel_dimension, pattern.period_ratio(),
-                       pattern.frequency_ratio(), name(record.verdict), record.kind ? name(*record.kind) : "-",
-                       terminal_number(record.interval.least),
-                       record.interval.unbounded ? "inf" : terminal_number(record.interval.greatest));
+                       pattern.frequency_ratio(), is_unit_bar(bar) ? "" : fmt::format(" {:>10.6g}", 1.0 / period),
+                       name(record.verdict), record.kind ? name(*record.kind) : "-", energy(record.interval.least),
+                       record.interval.unbounded ? "inf" : energy(record.interval.greatest));
 }
 
 std::string patterns_csv_header() { return patterns_columns; }

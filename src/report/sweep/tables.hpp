@@ -17,10 +17,10 @@ namespace nsma {
 [[nodiscard]] std::string scan_csv_header();
 [[nodiscard]] std::string scan_csv_row(const Bar& bar, const PatternRecord& record);
 
-/// The same for the terminal: aligned columns, "inf" for unbounded, "-" for no value; energies
-/// of a closed gap in joules.
+/// The same for the terminal: aligned columns, "inf" for unbounded, "-" for no value; of a bar with units the frequency
+/// too, and energies in joules, as those of a closed gap are.
 [[nodiscard]] std::string scan_table_header(const Bar& bar);
-[[nodiscard]] std::string scan_table_row(const PatternRecord& record);
+[[nodiscard]] std::string scan_table_row(const Bar& bar, const PatternRecord& record);
 
 /// Columns of a sweep's patterns.csv: those of the scan, then energy_min_joule,
 /// energy_max_joule, energy_unbounded and reason.

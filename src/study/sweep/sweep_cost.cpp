@@ -21,6 +21,12 @@ constexpr double searched = 3'000;   // one of a free pattern from eight starts,
 constexpr double searched_on = 4;    // and so many m^3 more,
 constexpr double searched_all = 12;  // or so many where every method is tried in turn
 
+// So that those of 10 million patterns add up; it is more than a day.
+std::int64_t whole(double cost) {
+    constexpr double most = 1e11;
+    return std::llround(std::min(cost, most));
+}
+
 double answer_cost(PatternKind kind, double m, Objective objective, const OrbitSolverOptions& options) {
     const bool proof = options.solvers == SolverChoice::proof;
     if (is_extreme(objective) || m < 2) return closed_form;
@@ -48,7 +54,6 @@ SweepCost::SweepCost(const Scene& scene, const OrbitSolverOptions& options)
 SweepCost::Cost SweepCost::operator()(const Pattern& pattern) {
     const Sieved sieved = sieve_(pattern.free_steps, pattern.contact_steps);
     const double m = sieved.kernel_dimension;
-    const auto whole = [](double cost) { return std::llround(cost); };
     Cost cost;
     cost.verdict = whole(decided);
     if (sieved.finding != Finding::admissible || m > max_unknowns) return cost;
@@ -57,11 +62,12 @@ SweepCost::Cost SweepCost::operator()(const Pattern& pattern) {
     if (!is_solved(all_kinds_, kind)) return cost;
     const auto first = std::lower_bound(levels_.begin(), levels_.end(), sieved.energy_least);
     const auto last = sieved.unbounded ? levels_.end() : std::upper_bound(first, levels_.end(), sieved.energy_greatest);
-    const std::int64_t inside = is_extreme(objective_) ? 1 : last - first;
-    const std::int64_t asked = is_extreme(objective_) ? 1 : static_cast<std::int64_t>(levels_.size());
+    const auto inside = static_cast<double>(is_extreme(objective_) ? 1 : last - first);
+    const auto asked = static_cast<double>(is_extreme(objective_) ? 1 : levels_.size());
+    const double answer = answer_cost(*kind, m, objective_, options_);
     cost.outside = whole(outside_level);
-    cost.inside = whole(answer_cost(*kind, m, objective_, options_));
-    cost.answers = inside * cost.inside + (asked - inside) * cost.outside;
+    cost.inside = whole(answer);
+    cost.answers = whole(inside * answer + (asked - inside) * outside_level);
     return cost;
 }
 
