@@ -1,5 +1,5 @@
-// Records of a study or an orbit as the input says, under a checksum that fits: refused in one line that names the file, or
-// made into tables and charts.
+// Records of a study or an orbit as the input says, under a checksum that fits: refused in one line that names the
+// file, or made into tables and charts.
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -12,9 +12,9 @@
 #include "../support/sweep_scene.hpp"
 #include "fuzz.hpp"
 
+#include "orbit/fnv_hash.hpp"
 #include "nsma/report/input_error.hpp"
 #include "nsma/report/scene_file.hpp"
-#include "orbit/fnv_hash.hpp"
 #include "report/accuracy/accuracy_folder.hpp"
 #include "report/orbit_folder.hpp"
 #include "report/sensitivity/sensitivity_charts.hpp"
