@@ -4,6 +4,8 @@
 
 #include "standard_streams.hpp"
 
+#include "nsma/report/input_error.hpp"
+
 namespace nsma::app {
 
 void draw(const std::vector<Chart>& charts, const std::filesystem::path& folder, bool quiet, const Drawing& drawing) {
