@@ -411,14 +411,14 @@ std::optional<Command> read_command_line(int count, const char* const* words) {
         fmt::print("{}\n", version());
     } catch (const CLI::ParseError& error) {
         const auto named = app.get_subcommands();
-        std::string message = one_line(error.what());
-        while (message.ends_with(' ')) message.pop_back();
+        std::string message = error.what();
+        while (message.ends_with(' ') || message.ends_with('\n')) message.pop_back();
         if (!named.empty() && !named.front()->remaining().empty())
             message = unknown_of(*named.front());
         else if (const std::string missing = named.empty() ? "" : missing_of(*named.front()); !missing.empty())
             message = "expected " + missing + " as well";
-        throw InputError(fmt::format("command line: {} (see nsma {}--help)", message,
-                                     named.empty() ? "" : named.front()->get_name() + " "));
+        throw InputError(one_line(fmt::format("command line: {} (see nsma {}--help)", message,
+                                              named.empty() ? "" : named.front()->get_name() + " ")));
     }
     return std::nullopt;
 }
