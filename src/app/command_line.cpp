@@ -341,10 +341,8 @@ std::string unknown_of(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
         if (!option->get_positional()) options.push_back(option->get_name());
     }
-    std::vector<const char*> names;
-    for (const std::string& option : options) names.push_back(option.c_str());
     return fmt::format("expected an option of {}, got {}{}", command.get_name(), shortened(*word),
-                       did_you_mean(*word, names));
+                       did_you_mean(*word, options));
 }
 
 // All that a command needs and was not given.
