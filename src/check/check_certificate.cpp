@@ -36,13 +36,10 @@ private:
                 invalid(std::string(what) + ": COND3 fails at " + column_name(static_cast<int>(c)));
         }
         Whole sum = 0;
-        for (int k = 0; k < certificate_.pattern.free_steps; ++k) {
-            const int column = terms_.kernel.column(k);
-            if (column < 0) continue;
-            sum += terms_.kernel.sign[static_cast<std::size_t>(k)] *
-                   Whole{beta.numerators[static_cast<std::size_t>(column)]};
+        terms_.kernel.for_each_live(0, certificate_.pattern.free_steps, [&](int k, std::size_t column, int sign) {
+            sum += Whole{beta.numerators[column]} * sign;
             if (sum > 0) invalid(std::string(what) + ": COND1 row " + std::to_string(k + 1) + " fails");
-        }
+        });
         if (sum != 0) invalid(std::string(what) + ": the tip does not return to the wall");
     }
 
@@ -87,11 +84,9 @@ private:
     // Whether a step of [begin, end) carries a column for which `moves` holds.
     template <class Moves>
     [[nodiscard]] bool any_step(int begin, int end, Moves moves) const {
-        for (int n = begin; n < end; ++n) {
-            const int column = terms_.kernel.column(n);
-            if (column >= 0 && moves(static_cast<std::size_t>(column))) return true;
-        }
-        return false;
+        bool any = false;
+        terms_.kernel.for_each_live(begin, end, [&](int, std::size_t column, int) { any = any || moves(column); });
+        return any;
     }
 
     // `witness`: an admissible point, or direction of a closed gap. Where one presses and one moves the tip, a mixture
@@ -147,10 +142,7 @@ private:
                     ", got " + std::to_string(n));
         }
         std::vector<int> row(terms_.dimension);
-        for (int k = 0; k < n; ++k) {
-            const int column = terms_.kernel.column(k);
-            if (column >= 0) row[static_cast<std::size_t>(column)] += terms_.kernel.sign[static_cast<std::size_t>(k)];
-        }
+        terms_.kernel.for_each_live(0, n, [&](int, std::size_t column, int sign) { row[column] += sign; });
         for (std::size_t c = 0; c < terms_.dimension; ++c) {
             const Sign sign = terms_.signs[c];
             const bool forced = sign == Sign::zero || (sign == Sign::nonnegative && row[c] > 0) ||

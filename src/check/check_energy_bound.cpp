@@ -85,20 +85,18 @@ void expect_chain(const CertificateTerms& terms) {
     const int t = terms.certificate.gap_sign * (weight > 0 ? 1 : -1) < 0 ? -1 : 1;
     std::vector<char> from_front(n), from_back(n);
     ChainRow row(n);
-    for (int k = 0; k + 1 < terms.certificate.pattern.free_steps; ++k) {
-        const int column = terms.kernel.column(k);
-        if (column < 0 || place[static_cast<std::size_t>(column)] < 0) continue;
-        row.add(static_cast<std::size_t>(place[static_cast<std::size_t>(column)]),
-                terms.kernel.sign[static_cast<std::size_t>(k)]);
+    terms.kernel.for_each_live(0, terms.certificate.pattern.free_steps - 1, [&](int, std::size_t column, int sign) {
+        if (place[column] < 0) return;
+        row.add(static_cast<std::size_t>(place[column]), sign);
         // COND1 says that this row is <= 0: a multiple of P_k, or of P_n - P_k.
         const std::size_t border = row.border();
-        if (border == 0) continue;
+        if (border == 0) return;
         if (t * row.first() < 0) from_front[border] = 1;
         if (t * row.last() < 0) from_back[border] = 1;
-        if (terms.certificate.gap_sign != 0) continue;
+        if (terms.certificate.gap_sign != 0) return;
         if (row.first() > 0) from_back[border] = 1;  // P_k <= 0 is P_n - P_k >= 0
         if (row.last() > 0) from_front[border] = 1;
-    }
+    });
     for (std::size_t k = 1; k < n; ++k) {
         if (from_front[k] == 0 || from_back[k] == 0)
             invalid("chain: COND1 does not bound the sum of its first " + std::to_string(k) + " columns");

@@ -50,7 +50,7 @@ private:
     // all columns to zero the last of those rows holds the sum of flip beta, so often that it does.
     [[nodiscard]] RationalVector projection(bool empty) const {
         RationalVector rows;
-        const int times = reduction_.gap_sign * reduction_.flip * contact_row(kernel_)[0];
+        const Rational times = reduction_.gap_sign * reduction_.flip * contact_row(kernel_)[0];
         if (empty && set_.shape == Shape::chain) {
             const auto last = static_cast<std::size_t>(reduction_.variables()) - 1;
             rows.emplace_back(reduction_.row_step[last], times);
@@ -64,15 +64,17 @@ private:
     // the time between 0 and delta/w.
     void claim_energies() {
         const int n = reduction_.variables();
-        const Integer square = Integer(weight()) * weight();
-        const Rational unit(Integer(4) * kernel_.pattern.cells * kernel_.pattern.cells,
-                            square * kernel_.pattern.class_count());
+        Rational unit = Rational(2 * kernel_.pattern.cells) / weight();
+        unit *= unit;
+        unit /= kernel_.pattern.class_count();
         const int changes = set_.shape == Shape::simplex ? 1 : n % 2 == 1 ? n : n - 1;
-        const Rational step = Rational(reduction_.gap_sign * reduction_.flip) / weight();
         certificate_.energy_least = unit / n;
         certificate_.energy_attained = certificate_.energy_bound = unit * changes;
-        for (int column = 0; column < changes; ++column)
-            certificate_.greatest.emplace_back(column, column % 2 == 0 ? step : Rational(-step));
+        Rational change = Rational(reduction_.gap_sign * reduction_.flip) / weight();
+        for (int column = 0; column < changes; ++column) {
+            certificate_.greatest.emplace_back(column, change);
+            change = -change;
+        }
     }
 
     const Kernel& kernel_;
