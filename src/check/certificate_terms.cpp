@@ -1,18 +1,46 @@
 #include "certificate_terms.hpp"
 
-#include <iterator>
-#include <utility>
-
-#include "nsma/numerics/interruption.hpp"
+#include <numeric>
+#include <optional>
 
 namespace nsma {
 namespace {
 
-// Honest denominators are products of a few numbers below 2^40.
-constexpr unsigned common_bits = 1024;
-// Steps walked and columns compared over all forms of a certificate: some ten seconds. A chain of 500 columns, ten
-// megabytes of text, has three millions.
-constexpr double most_work = 1e8;
+constexpr unsigned most_bits = 40;
+
+std::int64_t small(const Integer& value) {
+    if (value != 0 && msb(abs(value)) >= most_bits)
+        invalid("numbers: expected all over a common denominator below 2^" + std::to_string(most_bits));
+    return value.convert_to<std::int64_t>();
+}
+
+std::int64_t small(Whole value) {
+    constexpr Whole limit = Whole{1} << most_bits;
+    if (value >= limit || value <= -limit)
+        invalid("numbers: expected all over a common denominator below 2^" + std::to_string(most_bits));
+    return static_cast<std::int64_t>(value);
+}
+
+// The numerators of a sparse vector over a common denominator.
+struct Numerators {
+    std::vector<std::int64_t> values;
+    std::int64_t denominator = 1;
+
+    explicit Numerators(const RationalVector& sparse) {
+        for (const auto& entry : sparse) {
+            const std::int64_t own = small(denominator_of(entry.second));
+            if (own != denominator) denominator = small(Whole{denominator} / std::gcd(denominator, own) * own);
+        }
+        values.reserve(sparse.size());
+        for (const auto& entry : sparse) {
+            const std::int64_t own = small(denominator_of(entry.second));
+            values.push_back(small(Whole{small(numerator(entry.second))} * (denominator / own)));
+        }
+    }
+
+private:
+    static Integer denominator_of(const Rational& value) { return boost::multiprecision::denominator(value); }
+};
 
 }  // namespace
 
@@ -20,26 +48,12 @@ void invalid(std::string reason) { throw Invalid{std::move(reason)}; }
 
 std::string column_name(int column) { return "column " + std::to_string(column); }
 
-Integer common_multiple(const Integer& a, const Integer& b) {
-    Integer result = lcm(a, b);
-    if (msb(result) >= common_bits) {
-        invalid("fractions: expected a common denominator below 2^" + std::to_string(common_bits) + ", got one above");
-    }
-    return result;
-}
-
 CertificateTerms::CertificateTerms(const Certificate& of)
     : certificate(of),
       kernel(exact_kernel(of.pattern)),
       signs(conditions(kernel, of.gap_sign).bound_of),
       dimension(static_cast<std::size_t>(kernel.dimension())),
       factor(Integer(4) * of.pattern.cells * of.pattern.cells, of.pattern.class_count()) {
-    const auto forms = static_cast<double>(of.rest.size() + of.greatest_proof.chain_bounds.size());
-    const double work = forms * (static_cast<double>(of.pattern.free_steps) + static_cast<double>(dimension));
-    if (work > most_work) {
-        invalid("size: expected at most " + std::to_string(static_cast<long>(most_work)) +
-                " steps and columns over all forms, got " + std::to_string(static_cast<long>(work)));
-    }
     const Eigen::VectorXi row = contact_row(kernel);
     contact.assign(row.data(), row.data() + row.size());
 }
@@ -51,25 +65,22 @@ bool CertificateTerms::allows(std::size_t column, int sign) const {
 }
 
 Fractions CertificateTerms::dense(const RationalVector& sparse, const char* what) const {
-    Fractions result{std::vector<Integer>(dimension)};
     int last = -1;
-    for (const auto& [column, value] : sparse) {
-        if (column <= last || column >= static_cast<int>(dimension)) {
+    for (const auto& entry : sparse) {
+        if (entry.first <= last || entry.first >= static_cast<int>(dimension)) {
             invalid(std::string(what) + ": expected increasing columns below " + std::to_string(dimension) + ", got " +
-                    std::to_string(column));
+                    std::to_string(entry.first));
         }
-        last = column;
-        result.denominator = common_multiple(result.denominator, denominator(value));
+        last = entry.first;
     }
-    for (const auto& [column, value] : sparse) {
-        result.numerators[static_cast<std::size_t>(column)] =
-            numerator(value) * (result.denominator / denominator(value));
-    }
+    const Numerators numerators(sparse);
+    Fractions result{std::vector<std::int64_t>(dimension), numerators.denominator};
+    for (std::size_t i = 0; i < sparse.size(); ++i)
+        result.numerators[static_cast<std::size_t>(sparse[i].first)] = numerators.values[i];
     return result;
 }
 
-Fractions CertificateTerms::combine_rows(const RationalVector& rows) const {
-    Fractions result{std::vector<Integer>(dimension)};
+Fractions CertificateTerms::without_rows(const RationalVector& rows) const {
     int last = 0;
     for (const auto& [n, y] : rows) {
         if (n <= last || n >= certificate.pattern.free_steps) {
@@ -78,40 +89,20 @@ Fractions CertificateTerms::combine_rows(const RationalVector& rows) const {
         }
         if (y < 0) invalid("COND1 row " + std::to_string(n) + ": multiplier is negative");
         last = n;
-        result.denominator = common_multiple(result.denominator, denominator(y));
     }
-    Integer weight;
-    auto row = rows.rbegin();
+    const Numerators multipliers(rows);
+    std::vector<Whole> sums(dimension);
+    Whole weight = 0;
+    std::size_t row = rows.size();
     for (int k = last - 1; k >= 0; --k) {
-        for (; row != rows.rend() && row->first > k; ++row)
-            weight += numerator(row->second) * (result.denominator / denominator(row->second));
+        for (; row > 0 && rows[row - 1].first > k; --row) weight += multipliers.values[row - 1];
         const int column = kernel.column(k);
-        if (column < 0) continue;
-        Integer& sum = result.numerators[static_cast<std::size_t>(column)];
-        if (kernel.sign[static_cast<std::size_t>(k)] > 0)
-            sum += weight;
-        else
-            sum -= weight;
+        if (column >= 0) sums[static_cast<std::size_t>(column)] += kernel.sign[static_cast<std::size_t>(k)] * weight;
     }
+    Fractions result{std::vector<std::int64_t>(dimension), multipliers.denominator};
+    for (std::size_t c = 0; c < dimension; ++c)
+        result.numerators[c] = small(Whole{certificate.gap_sign} * contact[c] * result.denominator - sums[c]);
     return result;
-}
-
-Rational CertificateTerms::verified(const FormBound& bound) const {
-    stop_point();
-    const Fractions form = dense(bound.form, "form");
-    const Fractions rows = combine_rows(bound.proof.rows);
-    const Rational& nu = bound.proof.contact;
-    const Integer common = common_multiple(common_multiple(form.denominator, rows.denominator), denominator(nu));
-    const Integer of_form = common / form.denominator;
-    const Integer of_rows = common / rows.denominator;
-    const Integer of_contact = numerator(nu) * (common / denominator(nu));
-    for (std::size_t c = 0; c < dimension; ++c) {
-        const Integer rest = form.numerators[c] * of_form - rows.numerators[c] * of_rows - of_contact * contact[c];
-        // No allowed value may make the rest positive.
-        if (rest != 0 && allows(c, rest.sign()))
-            invalid("bound: multipliers do not dominate " + column_name(static_cast<int>(c)));
-    }
-    return nu * certificate.gap_sign;
 }
 
 }  // namespace nsma

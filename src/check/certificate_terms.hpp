@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,31 +16,27 @@ struct Invalid {
 [[noreturn]] void invalid(std::string reason);
 [[nodiscard]] std::string column_name(int column);
 
-/// Fractions over one denominator > 0.
+/// Sums of squares of numbers below 2^40 over at most 2^24 columns or steps fit, with room to spare.
+__extension__ using Whole = __int128;
+
+/// Fractions over one denominator > 0, all numbers below 2^40. Honest ones are below 2^24.
 struct Fractions {
-    std::vector<Integer> numerators;
-    Integer denominator = 1;
+    std::vector<std::int64_t> numerators;
+    std::int64_t denominator = 1;
 };
 
-/// The least common multiple of the two. Throws Invalid where it is longer than honest certificates need: sums over it
-/// would be as long, and a small forged line take minutes.
-[[nodiscard]] Integer common_multiple(const Integer& a, const Integer& b);
-
 /// What every part of a certificate is checked against: the pattern's signs and COND1-3, as integers, and exact sums of
-/// them. Its functions throw Invalid, and Interrupted.
+/// them. Its functions throw Invalid; each is O(n_T).
 struct CertificateTerms {
     using Sign = Conditions::Sign;
 
-    /// Throws Invalid where the certificate asks for more work than any honest one.
     explicit CertificateTerms(const Certificate& of);
 
     /// Whether COND3 allows a value of this sign (-1, 0, 1) in a column.
     [[nodiscard]] bool allows(std::size_t column, int sign) const;
     [[nodiscard]] Fractions dense(const RationalVector& sparse, const char* what) const;
-    /// sum_n y_n a_n over the columns: step k carries the sum of y_n over n > k.
-    [[nodiscard]] Fractions combine_rows(const RationalVector& rows) const;
-    /// Proved upper bound of the form over the admissible set.
-    [[nodiscard]] Rational verified(const FormBound& bound) const;
+    /// delta w - sum_n y_n a_n over the columns: step k carries the sum of y_n over n > k.
+    [[nodiscard]] Fractions without_rows(const RationalVector& rows) const;
 
     const Certificate& certificate;
     Kernel kernel;
@@ -49,7 +46,15 @@ struct CertificateTerms {
     Rational factor;           ///< E/E_unit = factor |beta|^2
 };
 
-/// The upper bound on |beta|^2 that the certificate's chain proves. Throws Invalid.
+/// Whether COND2 and COND3 alone bound every column: w_c beta_c/delta >= 0 for all that may differ from zero, or of a
+/// closed gap w_c beta_c of one sign, so that all are zero.
+[[nodiscard]] bool is_simplex(const CertificateTerms& terms);
+
+/// Throws Invalid unless COND1 bounds the partial sums of the certificate's chain from both sides.
+void expect_chain(const CertificateTerms& terms);
+
+/// The upper bound on |beta|^2 that follows of a simplex, or of the certificate's chain. Throws Invalid where neither
+/// holds.
 [[nodiscard]] Rational proved_square(const CertificateTerms& terms);
 
 }  // namespace nsma

@@ -1,105 +1,126 @@
 #include <algorithm>
-#include <optional>
-#include <set>
+#include <cstdlib>
 
 #include "certificate_terms.hpp"
-
-#include "nsma/numerics/interruption.hpp"
 
 namespace nsma {
 namespace {
 
 using Sign = CertificateTerms::Sign;
 
-// Beyond this a chain is refused, so that a forged one cannot exhaust the machine: pairs of values over all its steps.
-// Honest chains have two values.
-constexpr std::size_t chain_work = 2'000'000;
+// A COND1 row over the columns of a chain, step by step, and where neighbours in it differ.
+class ChainRow {
+public:
+    explicit ChainRow(std::size_t columns) : row_(columns) {}
 
-// A convex sum of squared steps over bounds and known directions of steps is greatest at a
-// vertex, and there every partial sum equals one of the bounds.
-Rational best_chain(const CertificateTerms& terms, const std::vector<int>& chain, const std::vector<Rational>& lower,
-                    const std::vector<Rational>& upper, const std::vector<Rational>& values) {
-    // Steps over one denominator: that of the values times the weights.
-    Integer common = 1, weights = 1;
-    for (const Rational& value : values) common = common_multiple(common, denominator(value));
-    for (const int column : chain)
-        weights = common_multiple(weights, abs(Integer(terms.contact[static_cast<std::size_t>(column)])));
-    std::vector<Integer> scaled;
-    scaled.reserve(values.size());
-    for (const Rational& value : values) scaled.push_back(numerator(value) * (common / denominator(value)));
-    std::vector<std::optional<Integer>> best(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (values[i] == 0) best[i] = 0;
+    void add(std::size_t place, int sign) {
+        count_borders(place, -1);
+        row_[place] += sign;
+        count_borders(place, 1);
     }
-    for (std::size_t k = 0; k < chain.size(); ++k) {
-        stop_point();
-        const auto c = static_cast<std::size_t>(chain[k]);
-        const int weight = terms.certificate.gap_sign * terms.contact[c];
-        int direction = terms.signs[c] == Sign::nonnegative ? 1 : terms.signs[c] == Sign::nonpositive ? -1 : 0;
-        if (weight < 0) direction = -direction;
-        const bool fixed = terms.signs[c] == Sign::zero;
-        const Integer scale = weights / weight;
-        std::vector<std::optional<Integer>> next(values.size());
-        for (std::size_t to = 0; to < values.size(); ++to) {
-            if (values[to] < lower[k + 1] || values[to] > upper[k + 1]) continue;
-            for (std::size_t from = 0; from < values.size(); ++from) {
-                if (!best[from] || (fixed && from != to)) continue;
-                if ((direction > 0 && to < from) || (direction < 0 && to > from)) continue;
-                const Integer step = (scaled[to] - scaled[from]) * scale;
-                Integer total = *best[from] + step * step;
-                if (!next[to] || total > *next[to]) next[to] = std::move(total);
-            }
+    /// Where all columns before are alike and all from there on: one of the two kinds is zero. Else 0.
+    [[nodiscard]] std::size_t border() const {
+        return borders_ == 1 && (row_.front() == 0 || row_.back() == 0) ? border_sum_ : 0;
+    }
+    [[nodiscard]] int first() const { return row_.front(); }
+    [[nodiscard]] int last() const { return row_.back(); }
+
+private:
+    void count_borders(std::size_t place, int times) {
+        for (const std::size_t border : {place, place + 1}) {
+            if (border == 0 || border == row_.size() || row_[border - 1] == row_[border]) continue;
+            borders_ += times;
+            border_sum_ = times > 0 ? border_sum_ + border : border_sum_ - border;
         }
-        best = std::move(next);
     }
-    const Integer unit = common * weights;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (values[i] == 1 && best[i]) return {*best[i], unit * unit};
-    }
-    invalid("chain: its bounds exclude one another");
-}
 
-Rational chain_bound(const CertificateTerms& terms, const GreatestProof& proof) {
-    std::vector<int> seen(terms.dimension, 0);
-    for (const int column : proof.chain) {
+    std::vector<int> row_;
+    int borders_ = 0;
+    std::size_t border_sum_ = 0;  // of their places
+};
+
+// The place of every column in the chain, -1 for those that are zero by COND3.
+std::vector<int> places_in(const CertificateTerms& terms) {
+    const std::vector<int>& chain = terms.certificate.chain;
+    std::vector<int> place(terms.dimension, -1);
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+        const int column = chain[k];
         if (column < 0 || column >= static_cast<int>(terms.dimension)) invalid("chain: unknown " + column_name(column));
         const auto c = static_cast<std::size_t>(column);
-        if (seen[c]++ != 0 || terms.contact[c] == 0) invalid("chain: " + column_name(column) + " cannot be chained");
+        if (place[c] >= 0) invalid("chain: " + column_name(column) + " twice");
+        if (terms.contact[c] == 0 || terms.contact[c] != terms.contact[static_cast<std::size_t>(chain.front())])
+            invalid("chain: " + column_name(column) + " has another weight in COND2");
+        place[c] = static_cast<int>(k);
     }
     for (std::size_t c = 0; c < terms.dimension; ++c) {
-        if (terms.signs[c] != Sign::zero && seen[c] == 0)
+        if (terms.signs[c] != Sign::zero && place[c] < 0)
             invalid("chain: " + column_name(static_cast<int>(c)) + " is missing");
+        if (terms.signs[c] == Sign::zero && place[c] >= 0)
+            invalid("chain: " + column_name(static_cast<int>(c)) + " is zero by COND3");
     }
-    const std::size_t n = proof.chain.size();
-    if (n == 0 || proof.chain_bounds.size() != 2 * (n - 1)) invalid("chain: expected two bounds a partial sum");
-    std::vector<Rational> lower(n + 1);
-    std::vector<Rational> upper(n + 1);
-    lower[n] = upper[n] = 1;
-    std::vector<int> partial(terms.dimension);
-    std::set<Rational> values{Rational(0), Rational(1)};
-    for (std::size_t k = 1; k < n; ++k) {
-        const auto c = static_cast<std::size_t>(proof.chain[k - 1]);
-        partial[c] = terms.certificate.gap_sign * terms.contact[c];
-        for (const int side : {1, -1}) {
-            const auto& bound = proof.chain_bounds[2 * (k - 1) + (side > 0 ? 0 : 1)];
-            const Fractions form = terms.dense(bound.form, "form");
-            for (std::size_t j = 0; j < terms.dimension; ++j) {
-                if (form.numerators[j] != side * partial[j] * form.denominator)
-                    invalid("chain: bound " + std::to_string(k) + " is of another form");
-            }
-            (side > 0 ? upper : lower)[k] = side * terms.verified(bound);
-        }
-        values.insert(lower[k]);
-        values.insert(upper[k]);
-    }
-    if (values.size() * values.size() * n > chain_work)
-        invalid("chain: expected few different bounds, got " + std::to_string(values.size()) + " over " +
-                std::to_string(n) + " steps");
-    return best_chain(terms, proof.chain, lower, upper, {values.begin(), values.end()});
+    return place;
 }
 
 }  // namespace
 
-Rational proved_square(const CertificateTerms& terms) { return chain_bound(terms, terms.certificate.greatest_proof); }
+bool is_simplex(const CertificateTerms& terms) {
+    int sign = terms.certificate.gap_sign;
+    for (std::size_t c = 0; c < terms.dimension; ++c) {
+        if (terms.signs[c] == Sign::zero) continue;
+        if (terms.signs[c] == Sign::free || terms.contact[c] == 0) return false;
+        const int own = (terms.contact[c] > 0) == (terms.signs[c] == Sign::nonnegative) ? 1 : -1;
+        if (sign == 0) sign = own;
+        if (own != sign) return false;
+    }
+    return true;
+}
+
+void expect_chain(const CertificateTerms& terms) {
+    const std::vector<int> place = places_in(terms);
+    const std::size_t n = terms.certificate.chain.size();
+    if (n == 0) invalid("chain: expected its columns, got none");
+    // P_n = delta/w; with t its sign, t P_k >= 0 and t (P_n - P_k) >= 0 are wanted of every partial sum. Of a closed
+    // gap P_n = 0, and both together say P_k = 0, whatever t is.
+    const int weight = terms.contact[static_cast<std::size_t>(terms.certificate.chain.front())];
+    const int t = terms.certificate.gap_sign * (weight > 0 ? 1 : -1) < 0 ? -1 : 1;
+    std::vector<char> from_front(n), from_back(n);
+    ChainRow row(n);
+    terms.kernel.for_each_live(0, terms.certificate.pattern.free_steps - 1, [&](int, std::size_t column, int sign) {
+        if (place[column] < 0) return;
+        row.add(static_cast<std::size_t>(place[column]), sign);
+        // COND1 says that this row is <= 0: a multiple of P_k, or of P_n - P_k.
+        const std::size_t border = row.border();
+        if (border == 0) return;
+        if (t * row.first() < 0) from_front[border] = 1;
+        if (t * row.last() < 0) from_back[border] = 1;
+        if (terms.certificate.gap_sign != 0) return;
+        if (row.first() > 0) from_back[border] = 1;  // P_k <= 0 is P_n - P_k >= 0
+        if (row.last() > 0) from_front[border] = 1;
+    });
+    for (std::size_t k = 1; k < n; ++k) {
+        if (from_front[k] == 0 || from_back[k] == 0)
+            invalid("chain: COND1 does not bound the sum of its first " + std::to_string(k) + " columns");
+    }
+}
+
+Rational proved_square(const CertificateTerms& terms) {
+    // Shares w_c beta_c/delta that are >= 0 and add up to 1: the greatest sum of squares has one share alone.
+    if (is_simplex(terms)) {
+        int least = 0;
+        for (std::size_t c = 0; c < terms.dimension; ++c) {
+            if (terms.signs[c] == Sign::zero) continue;
+            const int weight = std::abs(terms.contact[c]);
+            least = least == 0 ? weight : std::min(least, weight);
+        }
+        if (least == 0) invalid("energy_bound: no column may differ from zero");
+        return {1, Integer(least) * least};
+    }
+    // Steps of partial sums in [0, 1] from 0 to 1: a convex function is greatest where each is 0 or 1, and an odd
+    // number of steps is not zero.
+    expect_chain(terms);
+    const auto n = static_cast<int>(terms.certificate.chain.size());
+    const Integer weight = terms.contact[static_cast<std::size_t>(terms.certificate.chain.front())];
+    return {n % 2 == 1 ? n : n - 1, weight * weight};
+}
 
 }  // namespace nsma

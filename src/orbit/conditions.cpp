@@ -21,19 +21,16 @@ Conditions conditions(const Kernel& kernel, int gap_sign) {
     result.kernel = kernel;
     result.gap_sign = gap_sign;
     result.bound_of.assign(index(kernel.dimension()), Sign::free);
-    for (int n = kernel.pattern.free_steps; n < kernel.pattern.period_steps(); ++n) {
-        const int column = kernel.column(n);
-        if (column < 0) {
-            continue;
-        }
-        const Sign wanted = kernel.sign[index(n)] > 0 ? Sign::nonnegative : Sign::nonpositive;
-        Sign& bound = result.bound_of[index(column)];
+    const Pattern& pattern = kernel.pattern;
+    kernel.for_each_live(pattern.free_steps, pattern.period_steps(), [&](int, std::size_t column, int sign) {
+        const Sign wanted = sign > 0 ? Sign::nonnegative : Sign::nonpositive;
+        Sign& bound = result.bound_of[column];
         if (bound == Sign::free) {
             bound = wanted;
         } else if (bound != wanted) {
             bound = Sign::zero;
         }
-    }
+    });
     return result;
 }
 
@@ -44,12 +41,9 @@ Eigen::VectorXi contact_row(const Kernel& kernel) {
     const int remainder = window % period;  // steps seen once more
     Eigen::VectorXi row = Eigen::VectorXi::Zero(kernel.dimension());
     const int last = rounds > 0 ? period : remainder;
-    for (int n = 0; n < last; ++n) {
-        const int column = kernel.column(n);
-        if (column >= 0) {
-            row[column] -= kernel.sign[index(n)] * (rounds + (n < remainder ? 1 : 0));
-        }
-    }
+    kernel.for_each_live(0, last, [&](int n, std::size_t column, int sign) {
+        row[static_cast<Eigen::Index>(column)] -= sign * (rounds + (n < remainder ? 1 : 0));
+    });
     return row;
 }
 

@@ -17,8 +17,8 @@ namespace {
 
 // Fields keep their order, so that equal certificates are equal bytes.
 using Json = nlohmann::ordered_json;
-constexpr int format_version = 2;
-constexpr int deepest = 16;                                        // brackets; those of a certificate go five deep
+constexpr int format_version = 3;
+constexpr int deepest = 16;                                        // brackets; those of a certificate go three deep
 constexpr std::array claim_names{"trivial", "empty", "nonempty"};  // by Claim
 
 // Visits the fields of a certificate in the order of the file.
@@ -34,11 +34,10 @@ void for_each_field(Fields& certificate, Visitor&& visit) {
     visit("energy_attained", certificate.energy_attained);
     visit("energy_bound", certificate.energy_bound);
     visit("projection", certificate.projection);
-    visit("rest", certificate.rest);
+    visit("forcing_row", certificate.forcing_row);
     visit("ray", certificate.ray);
     visit("greatest", certificate.greatest);
-    visit("chain", certificate.greatest_proof.chain);
-    visit("chain_bounds", certificate.greatest_proof.chain_bounds);
+    visit("chain", certificate.chain);
 }
 
 Json json_of(int value) { return value; }
@@ -47,18 +46,11 @@ Json json_of(PatternKind kind) { return name(kind); }
 Json json_of(Certificate::Claim claim) { return claim_names.at(static_cast<std::size_t>(claim)); }
 Json json_of(const std::pair<int, Rational>& entry) { return {entry.first, to_string(entry.second)}; }
 
-Json json_of(const FormBound& bound);
-
 template <class Entry>
 Json json_of(const std::vector<Entry>& entries) {
     Json list = Json::array();
     for (const Entry& entry : entries) list.push_back(json_of(entry));
     return list;
-}
-
-Json json_of(const FormBound& bound) {
-    return {
-        {"form", json_of(bound.form)}, {"rows", json_of(bound.proof.rows)}, {"contact", json_of(bound.proof.contact)}};
 }
 
 template <class Value>
@@ -136,13 +128,6 @@ private:
         if (!json.is_array() || json.size() != 2) fail("a pair [index, \"fraction\"]", json, key);
         read(json[0], key, entry.first);
         read(json[1], key, entry.second);
-    }
-    void read(const Json& json, const char* key, FormBound& bound) const {
-        Reader reader(json, where_ + ": " + key);
-        reader.read(reader.required("form"), "form", bound.form);
-        reader.read(reader.required("rows"), "rows", bound.proof.rows);
-        reader.read(reader.required("contact"), "contact", bound.proof.contact);
-        reader.finish();
     }
     template <class Value>
     void read(const Json& json, const char* key, std::optional<Value>& value) const {

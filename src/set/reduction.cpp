@@ -13,13 +13,10 @@ std::vector<ForcedZero> forced_zeros(const Kernel& kernel, int flip) {
     const auto m = static_cast<std::size_t>(kernel.dimension());
     std::vector<int> height(m, 0);
     std::vector<ForcedZero> forced;
-    for (int n = 0; n + 1 < kernel.pattern.free_steps && forced.size() < m; ++n) {
-        const int column = kernel.column(n);
-        if (column < 0) continue;
-        int& at = height[static_cast<std::size_t>(column)];
-        at += flip * kernel.sign[static_cast<std::size_t>(n)];
-        if (at > 0) forced.push_back({column, n + 1});
-    }
+    kernel.for_each_live(0, kernel.pattern.free_steps - 1, [&](int n, std::size_t column, int sign) {
+        height[column] += flip * sign;
+        if (height[column] > 0 && forced.size() < m) forced.push_back({static_cast<int>(column), n + 1});
+    });
     return forced;
 }
 

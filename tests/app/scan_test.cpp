@@ -83,8 +83,8 @@ TEST_F(Program, CertificatesAreWrittenAndVerified) {
     expect_refused({"check", write("none.jsonl", "")}, "expected certificates");
     expect_refused({"check", write("text.jsonl", "hello\n")}, "text.jsonl:1");
     std::string old = lines_of(before)[0];
-    old.replace(old.find(":2,"), 3, ":1,");
-    expect_refused({"check", write("old.jsonl", old + "\n")}, "expected 2, got 1");
+    old.replace(old.find(":3,"), 3, ":1,");
+    expect_refused({"check", write("old.jsonl", old + "\n")}, "expected 3, got 1");
 }
 
 class Proofs : public Program {

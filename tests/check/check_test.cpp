@@ -10,11 +10,9 @@ namespace {
 
 using nsma::Certificate;
 using nsma::check;
-using nsma::FormBound;
 using nsma::Integer;
 using nsma::Pattern;
 using nsma::PatternKind;
-using nsma::proved_energy_bound;
 using nsma::Rational;
 using nsma::RationalVector;
 using Claim = Certificate::Claim;
@@ -27,33 +25,18 @@ Certificate claimed(const Pattern& pattern, int gap_sign, Claim claim) {
     return certificate;
 }
 
-/// A nonempty set at a gap > 0 of m columns whose weights in COND2 are all -1, with bounds of its partial sums s_k:
-/// s_k <= 1 by COND2 and `upper` rows, s_k >= 0 by `lower` rows, where steps follow k.
+/// A nonempty set at a gap > 0 of m columns whose weights in COND2 are all -1.
 Certificate bounded_set(const Pattern& pattern, PatternKind kind, int m, const Rational& least, int greatest_square,
-                        bool rows) {
+                        bool chain) {
     Certificate certificate = claimed(pattern, 1, Claim::nonempty);
     certificate.kind = kind;
     certificate.energy_least = least;
     certificate.energy_attained = certificate.energy_bound = greatest_square * m * least;
     for (int column = 0; column < greatest_square; ++column)
         certificate.greatest.emplace_back(column, column % 2 == 0 ? -1 : 1);
-    auto& proof = certificate.greatest_proof;
-    proof.chain.resize(static_cast<std::size_t>(m));
-    std::iota(proof.chain.begin(), proof.chain.end(), 0);
-    for (int k = 1; k < m; ++k) {
-        FormBound upper{{}, {{}, 1}};
-        FormBound lower{{}, {{}, 0}};
-        for (int column = 0; column < k; ++column) {
-            upper.form.emplace_back(column, -1);
-            lower.form.emplace_back(column, 1);
-        }
-        if (rows) {
-            upper.proof.rows.emplace_back(pattern.class_count() + k, 1);
-            lower.proof.rows.emplace_back(k, 1);
-        }
-        proof.chain_bounds.push_back(upper);
-        proof.chain_bounds.push_back(lower);
-    }
+    if (!chain) return certificate;
+    certificate.chain.resize(static_cast<std::size_t>(m));
+    std::iota(certificate.chain.begin(), certificate.chain.end(), 0);
     return certificate;
 }
 
@@ -79,33 +62,26 @@ Certificate closed_ray() {
     for (int column = 0; column < 8; ++column) certificate.ray.emplace_back(column, -1);
     return certificate;
 }
-Certificate closed_simplex() {
-    Certificate certificate = claimed({6, 16, 4}, 0, Claim::empty);
-    certificate.rest = {{{{0, -1}, {1, -1}, {2, -1}, {3, -1}}, {{}, 1}}};
-    return certificate;
-}
+Certificate closed_simplex() { return claimed({6, 16, 4}, 0, Claim::empty); }
 Certificate closed_chain() {
     Certificate certificate = claimed({2, 7, 1}, 0, Claim::empty);
-    certificate.rest = {{{}, {}},
-                        {{{0, 1}}, {{{1, 1}}, 0}},
-                        {{{0, -1}}, {{{5, 1}}, 1}},
-                        {{{1, 1}}, {{{2, 1}, {5, 1}}, 1}},
-                        {{{1, -1}}, {{{1, 1}, {6, 1}}, 1}},
-                        {{{2, 1}}, {{{6, 1}}, 0}},
-                        {{{2, -1}}, {{{2, 1}}, 1}}};
+    certificate.chain = {0, 1, 2};
+    return certificate;
+}
+/// COND1 lets COND3's columns be zero only.
+Certificate closed_forced() {
+    Certificate certificate = claimed({12, 8, 2}, 0, Claim::empty);
+    certificate.forcing_row = 2;
     return certificate;
 }
 
 TEST(Check, AcceptsWhatIsTrue) {
     for (const auto& certificate : {simplex(), chain(), long_chain(), trivial(), wrong_side(), empty_chain(),
-                                    closed_ray(), closed_simplex(), closed_chain()}) {
+                                    closed_ray(), closed_simplex(), closed_chain(), closed_forced()}) {
         EXPECT_EQ(check(certificate).reason, "")
             << certificate.pattern.cells << ' ' << certificate.pattern.free_steps << ' ' << certificate.gap_sign;
         EXPECT_TRUE(check(certificate).valid);
     }
-    EXPECT_EQ(proved_energy_bound(simplex()), Rational(36));
-    EXPECT_EQ(proved_energy_bound(chain()), Rational(12));
-    EXPECT_EQ(proved_energy_bound(long_chain()), Rational(132));
 }
 
 /// The reason with which a changed certificate is refused.
@@ -139,15 +115,23 @@ TEST(Check, SaysWhatDoesNotHold) {
     EXPECT_EQ(reason_after(simplex(), [](auto& c) { c.ray = {{0, -1}}; }), "ray: expected none where there is a gap");
     EXPECT_EQ(reason_after(closed_ray(), [](auto& c) { c.ray.clear(); }), "ray: expected a nonzero direction");
     EXPECT_EQ(reason_after(closed_ray(), [](auto& c) { c.ray[0].second = 1; }), "ray: COND3 fails at column 0");
-    EXPECT_EQ(reason_after(closed_simplex(), [](auto& c) { c.rest[0].proof.contact = 0; }),
-              "bound: multipliers do not dominate column 0");
-    EXPECT_EQ(reason_after(closed_simplex(), [](auto& c) { c.rest.clear(); }),
-              "rest: no form bounds every column of COND3");
-    EXPECT_EQ(reason_after(closed_chain(), [](auto& c) { c.rest.pop_back(); }),
-              "rest: column 2 is not bounded from both sides");
-    EXPECT_EQ(reason_after(chain(), [](auto& c) { c.greatest_proof.chain.pop_back(); }), "chain: column 2 is missing");
-    EXPECT_EQ(reason_after(chain(), [](auto& c) { c.greatest_proof.chain_bounds.pop_back(); }),
-              "chain: expected two bounds a partial sum");
+    EXPECT_EQ(reason_after(closed_chain(), [](auto& c) { c.chain.clear(); }),
+              "rest: COND2 and COND3 alone leave more, and neither a row nor a chain is given");
+    EXPECT_EQ(reason_after(closed_chain(), [](auto& c) { c.chain.pop_back(); }), "chain: column 2 is missing");
+    EXPECT_EQ(reason_after(closed_chain(), [](auto& c) { std::swap(c.chain[0], c.chain[1]); }),
+              "chain: COND1 does not bound the sum of its first 1 columns");
+    EXPECT_EQ(reason_after(closed_forced(), [](auto& c) { c.forcing_row = *c.forcing_row - 1; }),
+              "forcing row: column 1 is left");
+    EXPECT_EQ(reason_after(closed_forced(), [](auto& c) { c.forcing_row = c.pattern.free_steps; }),
+              "forcing row: expected a step in 1..7, got 8");
+    EXPECT_EQ(reason_after(chain(), [](auto& c) { c.chain.pop_back(); }), "chain: column 2 is missing");
+    EXPECT_EQ(reason_after(chain(), [](auto& c) { c.chain.back() = 0; }), "chain: column 0 twice");
+    EXPECT_EQ(reason_after(chain(), [](auto& c) { c.chain.back() = 3; }), "chain: unknown column 3");
+    EXPECT_EQ(reason_after(chain(), [](auto& c) { c.chain.clear(); }), "chain: column 0 is missing");
+    EXPECT_EQ(reason_after(simplex(), [](auto& c) { c.energy_bound = 35; }), "energy_bound: proved only 36");
+    EXPECT_EQ(reason_after(long_chain(), [](auto& c) { c.energy_bound = 131; }), "energy_bound: proved only 132");
+    EXPECT_EQ(reason_after(simplex(), [](auto& c) { c.greatest[0].second = Rational(1, Integer(1) << 50); }),
+              "numbers: expected all over a common denominator below 2^40");
     EXPECT_EQ(reason_after(chain(), [](auto& c) { c.energy_bound = 11; }), "energy_bound: proved only 12");
 }
 

@@ -12,7 +12,6 @@ using nsma::check;
 using nsma::Pattern;
 using nsma::Rational;
 using nsma::RationalVector;
-using nsma::RowCombination;
 using truth::for_each_problem;
 using truth::largest_mesh;
 using truth::proof_of;
@@ -29,13 +28,8 @@ struct Numbers {
             if (*energy) fractions.push_back(&**energy);
         }
         for (auto* vector : {&c.projection, &c.ray, &c.greatest}) add(*vector);
-        for (auto* bounds : {&c.rest, &c.greatest_proof.chain_bounds}) {
-            for (auto& bound : *bounds) {
-                add(bound.form);
-                add(bound.proof);
-            }
-        }
-        for (int& column : c.greatest_proof.chain) integers.push_back(&column);
+        for (int& column : c.chain) integers.push_back(&column);
+        if (c.forcing_row) integers.push_back(&*c.forcing_row);
     }
 
 private:
@@ -44,10 +38,6 @@ private:
             integers.push_back(&index);
             fractions.push_back(&value);
         }
-    }
-    void add(RowCombination& combination) {
-        add(combination.rows);
-        fractions.push_back(&combination.contact);
     }
 };
 
@@ -107,11 +97,9 @@ void for_each_forgery(const Certificate& original, Visit visit) {
     shuffle(
         "greatest", [](Certificate & c) -> auto& { return c.greatest; });
     shuffle(
-        "rest", [](Certificate & c) -> auto& { return c.rest; });
-    shuffle(
-        "chain", [](Certificate & c) -> auto& { return c.greatest_proof.chain; });
-    shuffle(
-        "chain bounds", [](Certificate & c) -> auto& { return c.greatest_proof.chain_bounds; });
+        "chain", [](Certificate & c) -> auto& { return c.chain; });
+    edited("forcing row", [](Certificate& c) { c.forcing_row = 1; });
+    edited("forcing row", [](Certificate& c) { c.forcing_row.reset(); });
     // Energies invented, forgotten and moved.
     const auto energy = [&](const char* what, auto energy_of) {
         edited(what, [&](Certificate& c) { energy_of(c) = Rational(7, 3); });

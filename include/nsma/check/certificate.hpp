@@ -9,28 +9,6 @@
 
 namespace nsma {
 
-/// Sum of constraints: sum_n y_n a_n + nu w over the columns of alpha, where a_n is the COND1
-/// row sum_{k<n} eps_k beta (<= 0, 1 <= n < r, y_n >= 0) and w = x_0 is COND2's row (= delta).
-struct RowCombination {
-    RationalVector rows;  ///< (n, y_n)
-    Rational contact;     ///< nu, any sign
-};
-
-/// Proof that f . beta <= value for one linear form over the admissible set: f minus the
-/// combination has no positive part that COND3 allows, so value = nu delta.
-struct FormBound {
-    RationalVector form;   ///< (column, coefficient)
-    RowCombination proof;  ///< y and nu
-};
-
-/// Upper bound on |beta|^2 over the admissible set: columns in this order with partial sums s_k of w_c beta_c/delta,
-/// 0 = s_0, s_n = 1, and bounds of s_k (forms s_k, then -s_k, k = 1..n-1). A convex sum over steps is greatest where
-/// each s_k is at a bound, which dynamic programming decides.
-struct GreatestProof {
-    std::vector<int> chain;               ///< columns in the order of the partial sums
-    std::vector<FormBound> chain_bounds;  ///< 2 (n - 1) of them
-};
-
 /// Everything needed to believe the verdict on one pattern, as exact numbers. The four integers
 /// (N, r, p, sign d) and this are enough: see check().
 struct Certificate {
@@ -43,16 +21,20 @@ struct Certificate {
     /// where no column has a contact step, `stuck` where none has a free one.
     std::optional<PatternKind> kind;
 
-    /// gap != 0: y of the projection rho of delta w on the cone of COND1 and COND3. rho = 0
-    /// proves emptiness (a Farkas vector); else beta = rho/|rho|^2 is the least-energy point.
+    /// gap != 0: (n, y_n >= 0) of the COND1 rows a_n, a_n . beta = sum_{k<n} eps_k beta <= 0, that a projection takes.
+    /// With rho the projection of delta w - sum y_n a_n on COND3's cone (w = x_0: COND2's row), rho = 0 proves
+    /// emptiness (a Farkas vector); else beta = rho/|rho|^2 is the least-energy point.
     RationalVector projection;
-    /// Closed gap, empty: forms proved <= 0 that together leave only beta = 0.
-    std::vector<FormBound> rest;
+    /// Closed gap, empty: step of a COND1 row that COND3 lets have terms >= 0 only, so that every column is zero.
+    std::optional<int> forcing_row;
     /// Closed gap, nonempty: a nonzero admissible direction.
     RationalVector ray;
-    /// gap != 0: an admissible point of the greatest energy known, and the bound.
+    /// gap != 0: an admissible point of the greatest energy known.
     RationalVector greatest;
-    GreatestProof greatest_proof;  ///< why no energy exceeds `energy_bound`
+    /// Where COND3 does not bound the columns: their order in which COND1 has a row of each partial sum from either
+    /// end. They lie between 0 and delta/w, so |beta|^2 is greatest where they change all the time; of a closed gap
+    /// they are all zero.
+    std::vector<int> chain;
 
     std::optional<Rational> energy_least;     ///< E_min/E_unit claimed
     std::optional<Rational> energy_attained;  ///< E/E_unit claimed of `greatest`
@@ -69,9 +51,5 @@ struct CheckResult {
 /// no floating point, nothing taken from the program that wrote it. Never throws on a wrong
 /// certificate.
 [[nodiscard]] CheckResult check(const Certificate& certificate);
-
-/// The bound on E/E_unit that `greatest_proof` gives by itself, verified; absent when the proof
-/// does not hold.
-[[nodiscard]] std::optional<Rational> proved_energy_bound(const Certificate& certificate);
 
 }  // namespace nsma

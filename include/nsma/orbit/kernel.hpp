@@ -23,6 +23,16 @@ struct Kernel {
     [[nodiscard]] int dimension() const { return static_cast<int>(class_of.size()); }  ///< m
     /// Column of alpha that step n carries, or -1; n in [0, n_T).
     [[nodiscard]] int column(int n) const { return amplitude_of[static_cast<std::size_t>(n % classes)]; }
+    /// Calls visit(n, column, eps_n) for every step of [begin, end) that carries a wave, in their order.
+    template <class Visit>
+    void for_each_live(int begin, int end, Visit visit) const {
+        int of_class = begin % classes;
+        for (int n = begin; n < end; ++n) {
+            const int j = amplitude_of[static_cast<std::size_t>(of_class)];
+            if (j >= 0) visit(n, static_cast<std::size_t>(j), static_cast<int>(sign[static_cast<std::size_t>(n)]));
+            if (++of_class == classes) of_class = 0;
+        }
+    }
     /// b_n of the motion with these amplitudes (size m), in their unit; any n >= 0.
     [[nodiscard]] double wave(const Eigen::VectorXd& amplitudes, int n) const {
         const int step = n % pattern.period_steps();
