@@ -58,7 +58,10 @@ private:
     }
 
     [[nodiscard]] static Rational fraction(Whole numerator, std::int64_t denominator) {
-        return {Integer(numerator), Integer(denominator) * denominator};
+        Rational result(numerator);
+        result /= denominator;
+        result /= denominator;
+        return result;
     }
 
     // rho: delta w minus the combination, projected on COND3's cone.
