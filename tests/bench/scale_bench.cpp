@@ -51,10 +51,10 @@ void sieve(benchmark::State& state) {
 BENCHMARK(sieve)->Arg(125)->Arg(250)->Arg(500)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 // Verdict and energy interval of each of them that the sieve leaves; of each with an exact proof.
-void scan_all(benchmark::State& state, ScanMethod method) {
+void scan_all(benchmark::State& state, const PatternSelection& patterns, ScanMethod method) {
     Scene scene;
     scene.mesh.cells = static_cast<int>(state.range(0));
-    scene.patterns = PeriodSelection{{0.0, 4.0}, std::nullopt};
+    scene.patterns = patterns;
     long admissible = 0, failed = 0;
     for (auto _ : state) {
         admissible = failed = 0;
@@ -68,8 +68,16 @@ void scan_all(benchmark::State& state, ScanMethod method) {
     }
     label(state, {{"admissible", static_cast<double>(admissible)}, {"failed", static_cast<double>(failed)}});
 }
-void scan_certified(benchmark::State& state) { scan_all(state, ScanMethod::certified); }
-BENCHMARK(scan_certified)->Arg(25)->Arg(50)->Arg(100)->Unit(benchmark::kMillisecond)->Iterations(1);
+const PatternSelection spectrum = PeriodSelection{{0.0, 4.0}, std::nullopt};
+const PatternSelection first_mode = ModeSelection{1};
+void scan_integers(benchmark::State& state) { scan_all(state, spectrum, ScanMethod::integers); }
+void scan_certified(benchmark::State& state) { scan_all(state, spectrum, ScanMethod::certified); }
+void mode_integers(benchmark::State& state) { scan_all(state, first_mode, ScanMethod::integers); }
+void mode_certified(benchmark::State& state) { scan_all(state, first_mode, ScanMethod::certified); }
+BENCHMARK(scan_integers)->Arg(25)->Arg(50)->Arg(64)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(scan_certified)->Arg(25)->Arg(50)->Arg(64)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(mode_integers)->Arg(250)->Arg(500)->Arg(1000)->Unit(benchmark::kMillisecond);
+BENCHMARK(mode_certified)->Arg(250)->Arg(500)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 // The kernel of (16 N/6, 4 N/6), m = N/1.5, by cycles and by singular values of the literal matrix.
 Pattern proportional(int cells) { return {cells, 16 * cells / 6, 4 * cells / 6}; }
