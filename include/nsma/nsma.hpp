@@ -26,6 +26,7 @@
 #include "nsma/check/certificate.hpp"
 #include "nsma/proof/prove.hpp"
 #include "nsma/search/answer.hpp"
+#include "nsma/search/certified_optimum.hpp"
 #include "nsma/search/orbit_solver.hpp"
 #include "nsma/search/pattern_problem.hpp"
 #include "nsma/price/relaxed_set.hpp"

@@ -104,18 +104,14 @@ Option pattern(bool required) {
     };
 }
 
-void energy(CLI::App& command, Arguments& arguments) {
-    auto* const free = command.get_option("--free");
-    const bool always = free->get_required();
+// `needs_pattern`: not without --free.
+void add_energy(CLI::App& command, Arguments& arguments, const char* help, bool needs_pattern) {
     const auto set = [&](const std::string& word) {
         const auto [value, joules] = energy_in(word).value();
         arguments.energy = value;
         arguments.joules = joules;
     };
-    auto* const option = command.add_option_function<std::string>(
-        "--energy", set,
-        always ? "energy E/E_g, or in joules with a J behind it: 12.6, 0.8J; without it the least-energy orbit"
-               : "energy of one pattern, E/E_g or in joules with a J behind it; without it its least energy");
+    auto* const option = command.add_option_function<std::string>("--energy", set, help);
     const auto refusal = [](const std::string& word) {
         return energy_in(word)
                    ? std::string()
@@ -123,7 +119,11 @@ void energy(CLI::App& command, Arguments& arguments) {
                                  least_level, greatest_level, shortened(word));
     };
     option->check({refusal, "NUMBER[J]"});
-    if (!always) option->needs(free);
+    if (needs_pattern) option->needs(command.get_option("--free"));
+}
+
+Option energy(const char* help, bool needs_pattern) {
+    return [=](CLI::App& command, Arguments& arguments) { add_energy(command, arguments, help, needs_pattern); };
 }
 
 void objective(CLI::App& command, Arguments& arguments) {
@@ -273,8 +273,9 @@ std::vector<Entry> commands() {
          run_scan},
         {"orbit",
          "one orbit of one pattern",
-         {scene, bar_and_mesh, pattern(true), energy, objective, solver,
-          flag("--json", &Arguments::json, "one JSON object on stdout instead of text"),
+         {scene, bar_and_mesh, pattern(true),
+          energy("energy E/E_g, or in joules with a J behind it: 12.6, 0.8J; without it the least-energy orbit", false),
+          objective, solver, flag("--json", &Arguments::json, "one JSON object on stdout instead of text"),
           [](CLI::App& command, Arguments& arguments) {
               command.add_option("--out", arguments.out, "folder for the orbit's charts, curves.csv and orbit.json");
           },
@@ -304,7 +305,9 @@ std::vector<Entry> commands() {
          run_accuracy},
         {"sensitivity",
          "which condition decides, how much, and what happens when it is relaxed",
-         {scene, pattern(false), energy, objective, out_folder, solver, all_kinds, quiet},
+         {scene, pattern(false),
+          energy("energy of one pattern, E/E_g or in joules with a J behind it; without it its least energy", true),
+          objective, out_folder, solver, all_kinds, quiet},
          "Examples:\n"
          "  nsma sensitivity problems/first-mode.toml --out out/sensitivity\n"
          "  nsma sensitivity problems/first-mode.toml --free 48 --contact 16 --energy 30 --out out/one",
@@ -319,10 +322,12 @@ std::vector<Entry> commands() {
         {"prove",
          "write exact certificates of the verdicts and energy intervals, one a line",
          {scene, bar_and_mesh, period, pattern(false),
-          text("--out", &Arguments::out, "file to write; until it is complete FILE.part"), resume, quiet},
+          energy("energy E/E_g, or in joules with a J behind it, at which the best orbits are certified too", false),
+          objective, text("--out", &Arguments::out, "file to write; until it is complete FILE.part"), resume, quiet},
          "Examples:\n"
          "  nsma prove problems/first-mode.toml --cells 6 --free 16 --contact 4 --out proof.jsonl\n"
-         "  nsma prove problems/first-mode.toml --cells 24 --period 0 4 --out proofs.jsonl",
+         "  nsma prove problems/first-mode.toml --cells 24 --period 0 4 --out proofs.jsonl\n"
+         "  nsma prove problems/first-mode.toml --energy 12.6 --out optima.jsonl",
          run_prove},
         {"check",
          "verify certificates from their four integers alone, in exact arithmetic",

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <tuple>
 
@@ -10,6 +11,7 @@
 #include "standard_streams.hpp"
 
 #include "nsma/numerics/interruption.hpp"
+#include "nsma/search/certified_optimum.hpp"
 #include "nsma/search/pattern_problem.hpp"
 #include "nsma/report/input_error.hpp"
 #include "report/certificate_file.hpp"
@@ -27,20 +29,39 @@ std::string problem_text(const Pattern& pattern, int gap_sign) {
     return fmt::format("({}, {}, {}, {})", pattern.cells, pattern.free_steps, pattern.contact_steps, gap_sign);
 }
 
+// Certified optima: how many, and how far the worst is from its bound.
+struct OptimumCounts {
+    long count = 0;
+    double gap = 0;
+
+    void add(const Optimum& optimum) {
+        ++count;
+        if (optimum.value > 0) gap = std::max(gap, std::abs(to_double((optimum.value - optimum.bound) / optimum.value)));
+    }
+    [[nodiscard]] std::string text() const { return fmt::format("largest gap {:.1e}", gap); }
+};
+
 // The proofs of one run, in the order of its patterns.
 class Proofs {
 public:
     Proofs(const Scene& scene, const std::vector<Pattern>& patterns)
         : patterns_(patterns), gap_sign_(scene.bar.gap_sign()) {}
 
+    /// Asks for the best orbit at an energy (E/E_unit) as well, of every contact motion that has one.
+    void ask_optima(Objective objective, const Rational& energy) {
+        objective_ = objective;
+        energy_ = energy;
+    }
+
     [[nodiscard]] long done() const { return done_; }
     [[nodiscard]] long total() const { return static_cast<long>(patterns_.size()); }
     [[nodiscard]] bool finished() const { return done_ == total(); }
-    [[nodiscard]] bool all_proved() const { return proved_ == total(); }
+    [[nodiscard]] bool all_proved() const { return proved_ == total() && !open_; }
     [[nodiscard]] const Pattern& next() const { return patterns_[static_cast<std::size_t>(done_)]; }
     [[nodiscard]] std::string text() const {
-        return fmt::format("{} patterns, {} proved; {} admissible ({}), greatest energy exact for {}", done_, proved_,
-                           admissible_.total(), admissible_.text(), exact_);
+        const std::string text = fmt::format("{} patterns, {} proved; {} admissible ({}), greatest energy exact for {}",
+                                             done_, proved_, admissible_.total(), admissible_.text(), exact_);
+        return objective_ ? fmt::format("{}\n{} best orbits proved, {}", text, optima_.count, optima_.text()) : text;
     }
 
     /// Throws unless the file, where there is one, holds nothing but certificates that this run writes again.
@@ -99,6 +120,7 @@ public:
         PatternProblem problem = pattern_problem(pattern, gap_sign_);
         Proof& proof = problem.proof;
         if (problem.verdict == Verdict::admissible) count(proof, *problem.kind);
+        if (objective_ && has_optimum(problem)) prove_optimum(problem);
         ++done_;
         if (proof.verdict_proved) {
             ++proved_;
@@ -128,8 +150,29 @@ private:
             refuse("a proof", "one that fails: " + result.reason);
         const Proof proof{certificate, true, {}};
         if (proof.certificate.claim == Certificate::Claim::nonempty) count(proof, *proof.certificate.kind);
+        if (proof.certificate.optimum) {
+            if (!objective_ || proof.certificate.optimum->energy != energy_)
+                refuse("no optimum at another energy", got + " with one");
+            optima_.add(*proof.certificate.optimum);
+        }
         ++done_;
         ++proved_;
+    }
+
+    [[nodiscard]] bool has_optimum(const PatternProblem& problem) const {
+        return problem.kind == PatternKind::contact && !outside(problem.interval, to_double(energy_));
+    }
+
+    void prove_optimum(PatternProblem& problem) {
+        OptimumProof found = certified_optimum(problem, *objective_, energy_);
+        if (!found.certificate) {
+            open_ = true;
+            const Pattern& pattern = problem.kernel.pattern;
+            say("({}, {}): best orbit unproved: {}", pattern.free_steps, pattern.contact_steps, found.unproved);
+            return;
+        }
+        optima_.add(*found.certificate->optimum);
+        problem.proof.certificate = std::move(*found.certificate);
     }
 
     void count(const Proof& proof, PatternKind kind) {
@@ -141,7 +184,11 @@ private:
     int gap_sign_;
     long done_ = 0;
     long proved_ = 0;
-    long exact_ = 0;  // greatest energies
+    long exact_ = 0;                      // greatest energies
+    std::optional<Objective> objective_;  // of the optima, where they are asked for
+    Rational energy_;
+    OptimumCounts optima_;
+    bool open_ = false;  // an optimum could not be proved
     KindCounts admissible_;
 };
 
@@ -152,6 +199,13 @@ int run_prove(const Arguments& arguments) {
     const auto patterns = arguments.patterns(scene);
     const std::string part = arguments.out + ".part";
     Proofs proofs(scene, patterns);
+    if (arguments.energy) {
+        if (scene.objective != Objective::least_shock && scene.objective != Objective::least_force) {
+            throw InputError(fmt::format("command line: --objective: expected least-shock or least-force, got {}",
+                                         name(scene.objective)));
+        }
+        proofs.ask_optima(scene.objective, decimal(*arguments.level(scene)));
+    }
     if (std::error_code code; !arguments.resume && !arguments.fresh && std::filesystem::exists(part, code)) {
         throw InputError(
             part + ": is an interrupted run: expected --resume to go on with it or --fresh to begin anew, got none");
@@ -181,6 +235,7 @@ int run_check(const Arguments& arguments) {
     InputFile file(arguments.input, "a file of certificates");
     long valid = 0;
     long rejected = 0;
+    OptimumCounts optima;
     std::string line;
     while (file.line(line, longest_certificate)) {
         stop_point();
@@ -189,12 +244,14 @@ int run_check(const Arguments& arguments) {
         const Certificate certificate = parse_certificate(line, where);
         const CheckResult result = check(certificate);
         ++(result.valid ? valid : rejected);
+        if (result.valid && certificate.optimum) optima.add(*certificate.optimum);
         if (result.valid) continue;
         fmt::print("{}: ({}, {}, {}): rejected: {}\n", where, certificate.pattern.cells, certificate.pattern.free_steps,
                    certificate.pattern.contact_steps, result.reason);
     }
     if (valid + rejected == 0) throw InputError(arguments.input + ": expected certificates, got none");
     fmt::print("{} certificates valid, {} rejected\n", valid, rejected);
+    if (optima.count > 0) fmt::print("{} best orbits among them, {}\n", optima.count, optima.text());
     return rejected == 0 ? exit_done : exit_solver;
 }
 

@@ -105,4 +105,33 @@ Fractions CertificateTerms::without_rows(const RationalVector& rows) const {
     return result;
 }
 
+void check_cone(const CertificateTerms& terms, const Fractions& beta, const char* what) {
+    for (std::size_t c = 0; c < terms.dimension; ++c) {
+        const std::int64_t value = beta.numerators[c];
+        if (!terms.allows(c, value > 0 ? 1 : value < 0 ? -1 : 0))
+            invalid(std::string(what) + ": COND3 fails at " + column_name(static_cast<int>(c)));
+    }
+    Whole sum = 0;
+    terms.kernel.for_each_live(0, terms.certificate.pattern.free_steps, [&](int k, std::size_t column, int sign) {
+        sum += Whole{beta.numerators[column]} * sign;
+        if (sum > 0) invalid(std::string(what) + ": COND1 row " + std::to_string(k + 1) + " fails");
+    });
+    if (sum != 0) invalid(std::string(what) + ": the tip does not return to the wall");
+}
+
+Whole contact_value(const CertificateTerms& terms, const Fractions& beta) {
+    Whole sum = 0;
+    for (std::size_t c = 0; c < terms.dimension; ++c) sum += Whole{beta.numerators[c]} * terms.contact[c];
+    return sum;
+}
+
+Rational square(const Fractions& beta) {
+    Whole sum = 0;
+    for (const std::int64_t value : beta.numerators) sum += Whole{value} * value;
+    Rational result(sum);
+    result /= beta.denominator;
+    result /= beta.denominator;
+    return result;
+}
+
 }  // namespace nsma

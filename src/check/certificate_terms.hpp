@@ -57,4 +57,14 @@ void expect_chain(const CertificateTerms& terms);
 /// holds.
 [[nodiscard]] Rational proved_square(const CertificateTerms& terms);
 
+/// What the certificate's optimum proves. Throws Invalid where that is nothing.
+[[nodiscard]] OptimumFacts proved_optimum(const CertificateTerms& terms, const Optimum& optimum);
+
+/// COND1 and COND3 of a point or direction (a cone); COND2 is the caller's.
+void check_cone(const CertificateTerms& terms, const Fractions& beta, const char* what);
+/// w . beta over the denominator of beta.
+[[nodiscard]] Whole contact_value(const CertificateTerms& terms, const Fractions& beta);
+/// |beta|^2.
+[[nodiscard]] Rational square(const Fractions& beta);
+
 }  // namespace nsma

@@ -12,6 +12,8 @@ public:
     explicit Checker(const Certificate& certificate) : certificate_(certificate), terms_(certificate) {}
 
     void run() {
+        if (certificate_.optimum && certificate_.claim != Certificate::Claim::nonempty)
+            invalid("optimum: expected none but of a nonempty set");
         switch (certificate_.claim) {
             case Certificate::Claim::trivial:
                 expect_no_kind();
@@ -20,48 +22,22 @@ public:
                 expect_no_energies("a trivial kernel");
                 return;
             case Certificate::Claim::empty: check_empty(); return;
-            case Certificate::Claim::nonempty: check_nonempty(); return;
+            case Certificate::Claim::nonempty: check_nonempty(); break;
         }
-        invalid("claim: unknown");
+        if (certificate_.optimum) check_optimum(*certificate_.optimum);
     }
+
+    [[nodiscard]] OptimumFacts optimum() const { return proved_optimum(terms_, *certificate_.optimum); }
 
 private:
     using Sign = CertificateTerms::Sign;
 
-    // COND1 and COND3 (a cone); COND2 is the caller's.
-    void check_cone(const Fractions& beta, const char* what) const {
-        for (std::size_t c = 0; c < terms_.dimension; ++c) {
-            const std::int64_t value = beta.numerators[c];
-            if (!terms_.allows(c, value > 0 ? 1 : value < 0 ? -1 : 0))
-                invalid(std::string(what) + ": COND3 fails at " + column_name(static_cast<int>(c)));
-        }
-        Whole sum = 0;
-        terms_.kernel.for_each_live(0, certificate_.pattern.free_steps, [&](int k, std::size_t column, int sign) {
-            sum += Whole{beta.numerators[column]} * sign;
-            if (sum > 0) invalid(std::string(what) + ": COND1 row " + std::to_string(k + 1) + " fails");
-        });
-        if (sum != 0) invalid(std::string(what) + ": the tip does not return to the wall");
-    }
-
-    // w . beta over the denominator of beta
-    [[nodiscard]] Whole contact_value(const Fractions& beta) const {
-        Whole sum = 0;
-        for (std::size_t c = 0; c < terms_.dimension; ++c) sum += Whole{beta.numerators[c]} * terms_.contact[c];
-        return sum;
-    }
-
-    // |beta|^2 over the square of its denominator
-    [[nodiscard]] static Whole square(const Fractions& beta) {
-        Whole sum = 0;
-        for (const std::int64_t value : beta.numerators) sum += Whole{value} * value;
-        return sum;
-    }
-
-    [[nodiscard]] static Rational fraction(Whole numerator, std::int64_t denominator) {
-        Rational result(numerator);
-        result /= denominator;
-        result /= denominator;
-        return result;
+    void check_optimum(const Optimum& said) const {
+        const OptimumFacts facts = optimum();
+        if (abs(facts.energy - said.energy) > said.energy_error * said.energy)
+            invalid("optimum: its orbit has the energy " + to_string(facts.energy));
+        if (facts.value > said.value) invalid("optimum: its orbit has " + to_string(facts.value));
+        if (said.bound > facts.bound) invalid("optimum: proved only " + to_string(facts.bound));
     }
 
     // rho: delta w minus the combination, projected on COND3's cone.
@@ -161,13 +137,13 @@ private:
             return;
         }
         const Fractions rho = projection();
-        const Whole length = square(rho);
+        const Rational length = square(rho);
         if (length == 0) invalid("least-energy point: the projection is zero");
-        check_cone(rho, "least-energy point");
+        check_cone(terms_, rho, "least-energy point");
         // delta w . rho = |rho|^2 makes rho/|rho|^2 meet COND2 and proves that nothing is nearer.
-        if (contact_value(rho) * certificate_.gap_sign * rho.denominator != length)
+        if (Rational(contact_value(terms_, rho)) * certificate_.gap_sign / rho.denominator != length)
             invalid("least-energy point: COND2 fails");
-        const Rational least = terms_.factor / fraction(length, rho.denominator);
+        const Rational least = terms_.factor / length;
         if (!certificate_.energy_least || *certificate_.energy_least != least)
             invalid("energy_least: expected " + to_string(least));
         check_kind(rho);
@@ -178,8 +154,8 @@ private:
     [[nodiscard]] Fractions check_ray() const {
         Fractions ray = terms_.dense(certificate_.ray, "ray");
         if (square(ray) == 0) invalid("ray: expected a nonzero direction");
-        check_cone(ray, "ray");
-        if (contact_value(ray) != 0) invalid("ray: COND2 fails");
+        check_cone(terms_, ray, "ray");
+        if (contact_value(terms_, ray) != 0) invalid("ray: COND2 fails");
         return ray;
     }
 
@@ -188,10 +164,10 @@ private:
             if (certificate_.energy_attained) invalid("energy_attained: expected a point");
         } else {
             const Fractions point = terms_.dense(certificate_.greatest, "greatest");
-            check_cone(point, "greatest-energy point");
-            if (contact_value(point) != Whole{certificate_.gap_sign} * point.denominator)
+            check_cone(terms_, point, "greatest-energy point");
+            if (contact_value(terms_, point) != Whole{certificate_.gap_sign} * point.denominator)
                 invalid("greatest-energy point: COND2 fails");
-            const Rational energy = terms_.factor * fraction(square(point), point.denominator);
+            const Rational energy = terms_.factor * square(point);
             if (!certificate_.energy_attained || *certificate_.energy_attained != energy) {
                 invalid("energy_attained: expected " + to_string(energy));
             }
@@ -229,6 +205,19 @@ CheckResult check(const Certificate& certificate) {
         return {false, failure.reason};
     }
     return {true, {}};
+}
+
+OptimumFacts optimum_facts(const Certificate& certificate) {
+    OptimumFacts facts;
+    facts.reason = refusal(certificate);
+    if (facts.reason.empty() && !certificate.optimum) facts.reason = "optimum: expected one, got none";
+    if (!facts.reason.empty()) return facts;
+    try {
+        facts = Checker(certificate).optimum();
+    } catch (const Invalid& failure) {
+        facts.reason = failure.reason;
+    }
+    return facts;
 }
 
 }  // namespace nsma

@@ -1,7 +1,10 @@
 #include "nsma/numerics/exact.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
 namespace nsma {
 
@@ -37,6 +40,27 @@ std::optional<Rational> parse_rational(const std::string& text, std::size_t digi
 }
 
 double to_double(const Rational& value) { return value.convert_to<double>(); }
+
+Rational decimal(double value) {
+    std::array<char, 40> text{};
+    const auto* const end = std::to_chars(text.begin(), text.end(), value, std::chars_format::scientific).ptr;
+    const std::string_view word(text.data(), static_cast<std::size_t>(end - text.begin()));
+    const std::size_t mark = word.find('e');
+    std::string digits;
+    for (const char letter : word.substr(0, mark)) {
+        if (letter != '.') digits += letter;
+    }
+    const std::size_t point = word.find('.');
+    const int places = point == std::string_view::npos ? 0 : static_cast<int>(mark - point - 1);
+    const int exponent = std::stoi(std::string(word.substr(mark + 1))) - places;
+    Rational result = parse_rational(digits).value();
+    const Integer power = boost::multiprecision::pow(Integer(10), static_cast<unsigned>(std::abs(exponent)));
+    if (exponent >= 0)
+        result *= power;
+    else
+        result /= power;
+    return result;
+}
 
 Rational exact(double value) {
     int exponent = 0;

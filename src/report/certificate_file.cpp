@@ -18,8 +18,9 @@ namespace {
 // Fields keep their order, so that equal certificates are equal bytes.
 using Json = nlohmann::ordered_json;
 constexpr int format_version = 3;
-constexpr int deepest = 16;                                        // brackets; those of a certificate go three deep
-constexpr std::array claim_names{"trivial", "empty", "nonempty"};  // by Claim
+constexpr int deepest = 16;                                          // brackets; those of a certificate go four deep
+constexpr std::array claim_names{"trivial", "empty", "nonempty"};    // by Claim
+constexpr std::array objective_names{"least-shock", "least-force"};  // by Optimum::Of
 
 // Visits the fields of a certificate in the order of the file.
 template <class Fields, class Visitor>
@@ -38,11 +39,25 @@ void for_each_field(Fields& certificate, Visitor&& visit) {
     visit("ray", certificate.ray);
     visit("greatest", certificate.greatest);
     visit("chain", certificate.chain);
+    visit("optimum", certificate.optimum);
+}
+
+template <class Fields, class Visitor>
+void for_each_optimum_field(Fields& optimum, Visitor&& visit) {
+    visit("objective", optimum.objective);
+    visit("energy", optimum.energy);
+    visit("bound", optimum.bound);
+    visit("value", optimum.value);
+    visit("energy_error", optimum.energy_error);
+    visit("orbit", optimum.orbit);
+    visit("window", optimum.window);
+    visit("multiplier", optimum.multiplier);
 }
 
 Json json_of(int value) { return value; }
 Json json_of(const Rational& value) { return to_string(value); }
 Json json_of(PatternKind kind) { return name(kind); }
+Json json_of(Optimum::Of objective) { return objective_names.at(static_cast<std::size_t>(objective)); }
 Json json_of(Certificate::Claim claim) { return claim_names.at(static_cast<std::size_t>(claim)); }
 Json json_of(const std::pair<int, Rational>& entry) { return {entry.first, to_string(entry.second)}; }
 
@@ -51,6 +66,12 @@ Json json_of(const std::vector<Entry>& entries) {
     Json list = Json::array();
     for (const Entry& entry : entries) list.push_back(json_of(entry));
     return list;
+}
+
+Json json_of(const Optimum& optimum) {
+    auto json = Json::object();
+    for_each_optimum_field(optimum, [&json](const char* key, const auto& value) { json[key] = json_of(value); });
+    return json;
 }
 
 template <class Value>
@@ -76,6 +97,7 @@ public:
 
     void operator()(const char* key, int& value) { read(required(key), key, value); }
     void operator()(const char* key, Certificate::Claim& claim) { read(required(key), key, claim); }
+    void operator()(const char* key, Optimum::Of& objective) { read(required(key), key, objective); }
     template <class Value>
     void operator()(const char* key, Value& value) {
         if (const Json* json = optional(key)) read(*json, key, value);
@@ -117,6 +139,17 @@ private:
         const auto* known = std::find_if(claim_names.begin(), claim_names.end(), [&](auto one) { return json == one; });
         if (known == claim_names.end()) fail("trivial, empty or nonempty", json, key);
         claim = static_cast<Certificate::Claim>(known - claim_names.begin());
+    }
+    void read(const Json& json, const char* key, Optimum::Of& objective) const {
+        const auto* known =
+            std::find_if(objective_names.begin(), objective_names.end(), [&](auto one) { return json == one; });
+        if (known == objective_names.end()) fail("least-shock or least-force", json, key);
+        objective = static_cast<Optimum::Of>(known - objective_names.begin());
+    }
+    void read(const Json& json, const char* key, Optimum& optimum) const {
+        Reader reader(json, where_ + ": " + key);
+        for_each_optimum_field(optimum, reader);
+        reader.finish();
     }
     void read(const Json& json, const char* key, PatternKind& kind) const {
         const auto* known =

@@ -49,6 +49,27 @@ TEST_F(Program, ScanMethodsAgreeToTheByte) {
     expect_refused({"scan", scene_, "--method", "magic"}, "--method");
 }
 
+TEST_F(Program, BestOrbitsAreCertifiedAtAnEnergy) {
+    const Words words{"prove", scene_, "--cells", "6", "--period", "0", "4", "--energy", "12", "--quiet", "--out"};
+    for (const std::string objective : {"least-shock", "least-force"}) {
+        const Result proved = run(with(words, {path(objective), "--objective", objective}));
+        EXPECT_EQ(proved.exit_code, 0) << proved.err;
+        EXPECT_NE(proved.out.find(" best orbits proved, largest gap "), std::string::npos) << proved.out;
+        const Result checked = run({"check", path(objective)});
+        EXPECT_EQ(checked.exit_code, 0) << checked.out;
+        EXPECT_NE(checked.out.find(" best orbits among them, largest gap "), std::string::npos) << checked.out;
+    }
+    // A bound that is raised is refused.
+    std::string forged = contents(path("least-shock"));
+    const auto at = forged.find("\"bound\":\"") + 9;
+    forged.replace(at, 1, forged[at] == '9' ? "99" : std::string(1, static_cast<char>(forged[at] + 1)));
+    const Result rejected = run({"check", write("forged.jsonl", forged)});
+    EXPECT_EQ(rejected.exit_code, 4);
+    EXPECT_NE(rejected.out.find("rejected: optimum: proved only "), std::string::npos) << rejected.out;
+    expect_refused(with(words, {path("none"), "--objective", "nearest"}),
+                   "--objective: expected least-shock or least-force");
+}
+
 TEST_F(Program, CertificatesAreWrittenAndVerified) {
     const std::string proofs = path("proofs.jsonl");
     const Result proved = run({"prove", scene_, "--cells", "6", "--period", "0", "4", "--out", proofs, "--quiet"});

@@ -16,6 +16,15 @@ using nsma::Rational;
 using nsma::to_double;
 using nsma::to_string;
 
+TEST(Exact, DecimalIsTheFractionThatIsTyped) {
+    EXPECT_EQ(nsma::decimal(12.6), Rational(63, 5));
+    EXPECT_EQ(nsma::decimal(1e-5), Rational(1, 100'000));
+    EXPECT_EQ(nsma::decimal(3e20), Rational(3) * Rational(Integer("100000000000000000000")));
+    EXPECT_EQ(nsma::decimal(-0.25), Rational(-1, 4));
+    EXPECT_EQ(nsma::decimal(7), Rational(7));
+    for (const double value : {0.1, 1.0 / 3.0, 2e-300, 6.02e23}) EXPECT_EQ(to_double(nsma::decimal(value)), value);
+}
+
 TEST(Exact, PrintsAndReadsTheSameFraction) {
     std::mt19937 random(1);
     for (int i = 0; i < 2000; ++i) {

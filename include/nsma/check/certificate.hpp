@@ -9,6 +9,21 @@
 
 namespace nsma {
 
+/// That no orbit of a `contact` pattern at one energy has less than `bound` of an objective, and an orbit that nearly
+/// has it. Objectives as reported (nondimensional).
+struct Optimum {
+    /// The two objectives with a choice: the smoothest orbit, and the least of the largest contact forces.
+    enum class Of { least_shock, least_force };
+    Of objective = Of::least_shock;  ///< what is least
+    Rational energy;                 ///< E/E_unit asked
+    Rational bound;                  ///< no orbit at that energy has less
+    RationalVector orbit;            ///< beta, admissible
+    Rational value;                  ///< of the orbit, at most
+    Rational energy_error;           ///< |E(orbit) - energy|/energy, at most
+    int window = 0;                  ///< least shock: columns in a row that a best orbit covers
+    Rational multiplier;             ///< least shock: of the energy, see data/optima.md
+};
+
 /// Everything needed to believe the verdict on one pattern, as exact numbers. The four integers
 /// (N, r, p, sign d) and this are enough: see check().
 struct Certificate {
@@ -36,6 +51,8 @@ struct Certificate {
     /// they are all zero.
     std::vector<int> chain;
 
+    std::optional<Optimum> optimum;  ///< at one energy
+
     std::optional<Rational> energy_least;     ///< E_min/E_unit claimed
     std::optional<Rational> energy_attained;  ///< E/E_unit claimed of `greatest`
     std::optional<Rational> energy_bound;     ///< claimed upper bound on E/E_unit
@@ -46,6 +63,16 @@ struct CheckResult {
     bool valid = false;  ///< every claim holds
     std::string reason;  ///< one line; of an invalid certificate: the row that fails
 };
+
+/// What orbit, window and multiplier of an optimum prove, exactly, whatever is claimed of them.
+struct OptimumFacts {
+    std::string reason;  ///< why nothing is proved, one line; empty where the rest holds
+    Rational energy;     ///< E/E_unit of the orbit
+    Rational value;      ///< objective of the orbit
+    Rational bound;      ///< no orbit at the energy asked has less; of least_force the bound claimed, which is proved
+};
+/// Of the optimum of a certificate, which must have one.
+[[nodiscard]] OptimumFacts optimum_facts(const Certificate& certificate);
 
 /// Re-verifies a certificate from its four integers, in integers and fractions only: no solver,
 /// no floating point, nothing taken from the program that wrote it. Never throws on a wrong

@@ -27,6 +27,9 @@ using RationalVector = std::vector<std::pair<int, Rational>>;
 /// Nearest double; overflows to infinity.
 [[nodiscard]] double to_double(const Rational& value);
 
+/// The shortest decimal that reads back to this finite double, as a fraction: 12.6 is 63/5.
+[[nodiscard]] Rational decimal(double value);
+
 /// The exact value of a finite double.
 [[nodiscard]] Rational exact(double value);
 

@@ -1,0 +1,177 @@
+// Certificates of optima against a search over every face, and against forgeries.
+#include "nsma/search/certified_optimum.hpp"
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "simplex_reference.hpp"
+#include "nsma/search/orbit_solver.hpp"
+
+namespace {
+
+using nsma::Objective;
+using nsma::Optimum;
+using nsma::Pattern;
+using nsma::PatternProblem;
+using nsma::Rational;
+using nsma::to_double;
+
+/// 2N sum_n (b_{n+1} - b_n)^2 of the waves themselves, as a matrix over |beta|.
+Eigen::MatrixXd shock_matrix(const PatternProblem& problem) {
+    const int m = problem.kernel.dimension();
+    const auto shock = [&](const Eigen::VectorXd& beta) {
+        const Eigen::VectorXd b = problem.kernel.waves(beta);
+        double sum = 0;
+        for (Eigen::Index n = 0; n < b.size(); ++n) sum += std::pow(b[(n + 1) % b.size()] - b[n], 2);
+        return 2.0 * problem.kernel.pattern.cells * sum;
+    };
+    Eigen::MatrixXd a(m, m);
+    for (int i = 0; i < m; ++i) {
+        for (int j = 0; j < m; ++j) {
+            const Eigen::VectorXd e = Eigen::VectorXd::Unit(m, i);
+            const Eigen::VectorXd f = Eigen::VectorXd::Unit(m, j);
+            a(i, j) = 0.25 * (shock(e + f) - shock(e - f));
+        }
+    }
+    return a;
+}
+
+/// The least value at an energy, by looking at every face.
+double truth(const PatternProblem& problem, Objective objective, double energy) {
+    const auto& set = problem.set;
+    const double q = energy / set.reduction.energy_factor;
+    const double s = set.reduction.gap_sign == 0 ? 0.0 : 1.0 / std::abs(set.reduction.contact_row[0]);
+    const int m = problem.kernel.dimension();
+    if (objective == Objective::least_force)
+        return 2.0 * problem.kernel.pattern.cells * (s == 0 ? std::sqrt(q / m) : reference::least_peak(m, s, q));
+    return reference::least(shock_matrix(problem), Eigen::VectorXd::Zero(m), s, q).value;
+}
+
+std::vector<double> levels_of(const PatternProblem& problem) {
+    if (problem.set.reduction.gap_sign == 0) return {0.3, 7.0};
+    const double least = *problem.interval.least;
+    const double greatest = *problem.interval.greatest;
+    std::vector<double> levels;
+    for (const double share : {0.02, 0.3, 0.55, 0.85, 0.98}) levels.push_back(least + share * (greatest - least));
+    return levels;
+}
+
+template <class Visit>
+void for_each_program(int largest, Visit visit) {
+    for (int cells = 2; cells <= largest; ++cells) {
+        for (int period = 2; period <= 4 * cells; ++period) {
+            for (int free = 1; free < period; ++free) {
+                const Pattern pattern{cells, free, period - free};
+                if (const int m = nsma::kernel_dimension(pattern); m < 2 || m > 6) continue;
+                for (const int gap_sign : {-1, 0, 1}) {
+                    const PatternProblem problem = nsma::pattern_problem(pattern, gap_sign);
+                    if (problem.kind != nsma::PatternKind::contact) continue;
+                    for (const Objective objective : {Objective::least_shock, Objective::least_force}) {
+                        for (const double level : levels_of(problem)) {
+                            SCOPED_TRACE(testing::Message()
+                                         << cells << " (" << free << ", " << period - free << ") gap " << gap_sign
+                                         << ' ' << name(objective) << " at " << level);
+                            visit(problem, objective, level);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(CertifiedOptimum, IsTheBestOfEveryFace) {
+    int programs = 0;
+    for_each_program(10, [&](const PatternProblem& problem, Objective objective, double level) {
+        const auto proof = nsma::certified_optimum(problem, objective, nsma::decimal(level));
+        ASSERT_TRUE(proof.certificate) << proof.unproved;
+        EXPECT_EQ(nsma::check(*proof.certificate).reason, "");
+        EXPECT_LT(proof.gap, 1e-6);
+        const Optimum& optimum = *proof.certificate->optimum;
+        const double best = truth(problem, objective, level);
+        // The reference finds its points to 1e-9; the orbit's energy errs by 1e-9, its value by a few times that.
+        EXPECT_LE(to_double(optimum.bound), best * (1 + 1e-9));
+        EXPECT_GE(to_double(optimum.bound), best * (1 - 1e-6));
+        EXPECT_NEAR(to_double(optimum.value) / best, 1.0, 1e-6);
+        EXPECT_LT(to_double(optimum.energy_error), 1e-8);
+        ++programs;
+    });
+    EXPECT_GT(programs, 500);
+}
+
+TEST(CertifiedOptimum, OfManyColumnsHasTheValueOfTheClosedForm) {
+    for (const int m : {10, 16, 40, 90}) {
+        for (const double level : {26.0, 32.5, 70.0, 300.0, 1.2 * m}) {
+            const Pattern pattern{5 * m / 2, 6 * m, 2 * m};
+            const PatternProblem problem = nsma::pattern_problem(pattern, 1);
+            if (outside(problem.interval, level)) continue;
+            for (const Objective objective : {Objective::least_shock, Objective::least_force}) {
+                SCOPED_TRACE(testing::Message() << m << ' ' << name(objective) << " at " << level);
+                const auto proof = nsma::certified_optimum(problem, objective, nsma::decimal(level));
+                ASSERT_TRUE(proof.certificate) << proof.unproved;
+                nsma::OrbitRequest request;
+                request.objective = objective;
+                request.level = level;
+                const auto answer = nsma::OrbitSolver().solve({}, problem, request);
+                EXPECT_NEAR(to_double(proof.certificate->optimum->bound) / *answer.objective_value, 1.0, 1e-6);
+            }
+        }
+    }
+}
+
+// No change of one number makes more than the truth of it.
+TEST(CertifiedOptimum, NoForgeryPasses) {
+    long rejected = 0, harmless = 0;
+    for_each_program(4, [&](const PatternProblem& problem, Objective objective, double level) {
+        const auto proof = nsma::certified_optimum(problem, objective, nsma::decimal(level));
+        ASSERT_TRUE(proof.certificate);
+        const auto attack = [&](auto change) {
+            auto forged = *proof.certificate;
+            change(*forged.optimum);
+            if (!nsma::check(forged).valid) {
+                ++rejected;
+                return;
+            }
+            ++harmless;
+            const double energy = to_double(forged.optimum->energy);
+            if (outside(problem.interval, energy)) return;  // of no orbit everything is true
+            const Objective said =
+                forged.optimum->objective == Optimum::Of::least_shock ? Objective::least_shock : Objective::least_force;
+            EXPECT_LE(to_double(forged.optimum->bound), truth(problem, said, energy) * (1 + 1e-9));
+        };
+        for (const Rational& factor : {Rational(1'000'001, 1'000'000), Rational(999'999, 1'000'000), Rational(2),
+                                       Rational(1, 2), Rational(-1), Rational(0)}) {
+            for (Rational Optimum::*member :
+                 {&Optimum::energy, &Optimum::bound, &Optimum::value, &Optimum::energy_error, &Optimum::multiplier})
+                attack([&](Optimum& optimum) { optimum.*member *= factor; });
+            // A bound that is moved with the multiplier or the window.
+            attack([&](Optimum& optimum) { optimum.bound *= factor, optimum.multiplier *= factor; });
+            attack([&](Optimum& optimum) { optimum.bound *= factor, ++optimum.window; });
+            attack([&](Optimum& optimum) { optimum.bound *= factor, --optimum.window; });
+        }
+        for (const int window : {-1, 0, 1, 2, 3, 4, 5, 6, 7, 1 << 30})
+            attack([&](Optimum& optimum) { optimum.window = window; });
+        attack([](Optimum& optimum) { optimum.orbit.clear(); });
+        attack([](Optimum& optimum) { optimum.orbit.front().second *= 2; });
+        attack([](Optimum& optimum) { optimum.orbit.front().first = 7; });
+        attack([](Optimum& optimum) {
+            optimum.objective =
+                optimum.objective == Optimum::Of::least_shock ? Optimum::Of::least_force : Optimum::Of::least_shock;
+        });
+    });
+    EXPECT_GT(rejected, harmless);
+    EXPECT_GT(harmless, 100);
+}
+
+TEST(CertifiedOptimum, SaysWhatItCannotProve) {
+    const PatternProblem contact = nsma::pattern_problem({6, 16, 4}, 1);
+    EXPECT_EQ(nsma::certified_optimum(contact, Objective::least_shock, 100).unproved,
+              "optimum: no orbit of this pattern has that energy");
+    EXPECT_EQ(nsma::certified_optimum(nsma::pattern_problem({6, 23, 1}, 1), Objective::least_shock, 12).unproved,
+              "optimum: expected a contact motion");
+    EXPECT_THROW((void)nsma::certified_optimum(contact, Objective::nearest, 12), std::invalid_argument);
+}
+
+}  // namespace
