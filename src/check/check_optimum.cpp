@@ -16,6 +16,10 @@ using Sign = CertificateTerms::Sign;
 // Fractions grow with the columns they pass: their work with the third power.
 constexpr int most_columns = 400;
 
+constexpr unsigned most_multiplier_bits = 80;
+
+unsigned bits_of(const Integer& value) { return value == 0 ? 0 : msb(abs(value)) + 1; }
+
 // y_j = |beta_j| >= 0 of every column; the shock is 4 N R (|y|^2 - sum_j y_j y_{j+1} - closure y_m y_1) with R rounds.
 struct Ring {
     Rational closure;
@@ -104,6 +108,8 @@ Rational least_shock(const CertificateTerms& terms, const Optimum& optimum, cons
         invalid("optimum: expected a window of 1.." + std::to_string(std::min(m, most_columns)) + " columns, got " +
                 std::to_string(k));
     }
+    if (bits_of(numerator(mu)) > most_multiplier_bits || bits_of(denominator(mu)) > most_multiplier_bits)
+        invalid("optimum: expected a multiplier of at most " + std::to_string(most_multiplier_bits) + " bits");
     const Rational ends = k == m ? closure : Rational(0);
     const Solved alike = solve(Half(k, mu, ends, true));
     const Solved opposite = solve(Half(k, mu, ends, false));

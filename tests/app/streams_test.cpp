@@ -222,6 +222,10 @@ TEST_F(Surroundings, AForgedCertificateKeepsNobodyBusy) {
          "expected a fraction"},
         {head + R"(1000000,"free_steps":6400000,"contact_steps":3200000,"gap_sign":0,"claim":"empty","chain":[0]})",
          "chain: column"},
+        {head + R"(1000,"free_steps":2400,"contact_steps":800,"gap_sign":1,"claim":"nonempty","kind":"contact",)" +
+             R"("energy_least":"25","optimum":{"objective":"least-shock","energy":"26","bound":"1","value":"9","energy_error":"1",)" +
+             R"("orbit":[[0,"-1"]],"window":400,"multiplier":"1/)" + digits.substr(0, 200) + "\"}}",
+         "expected a multiplier of at most 80 bits"},
         {head + std::string(80'000, '[') + std::string(80'000, ']') + "}", "expected brackets at most 16 deep"},
         {head + std::string(80'000, '['), "expected brackets at most 16 deep"},
         {head + R"(6,"free_steps":16,"contact_steps":4,"gap_sign":1,"claim":"empty",)" + "\"" + std::string(5000, 'k') +
