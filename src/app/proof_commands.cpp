@@ -36,7 +36,8 @@ struct OptimumCounts {
 
     void add(const Optimum& optimum) {
         ++count;
-        if (optimum.value > 0) gap = std::max(gap, std::abs(to_double((optimum.value - optimum.bound) / optimum.value)));
+        if (optimum.value > 0)
+            gap = std::max(gap, std::abs(to_double((optimum.value - optimum.bound) / optimum.value)));
     }
     [[nodiscard]] std::string text() const { return fmt::format("largest gap {:.1e}", gap); }
 };
