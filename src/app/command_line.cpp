@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -154,23 +153,8 @@ void solver(CLI::App& command, Arguments& arguments) {
 
 // R,P or R,P,E: steps, and an energy as --energy has it.
 void one_orbit(CLI::App& command, Arguments& arguments) {
-    struct Named {
-        int free, contact;
-        std::optional<std::pair<double, bool>> energy;
-    };
-    const auto named = [](std::string_view word) -> std::optional<Named> {
-        const std::size_t first = word.find(',');
-        const std::size_t second = first == std::string_view::npos ? first : word.find(',', first + 1);
-        if (first == std::string_view::npos) return std::nullopt;
-        const auto free = number_in<int>(word.substr(0, first));
-        const auto contact = number_in<int>(word.substr(first + 1, second - first - 1));
-        if (!free || !contact || *free < 1 || *contact < 1) return std::nullopt;
-        if (second == std::string_view::npos) return Named{*free, *contact, std::nullopt};
-        const auto energy = energy_in(word.substr(second + 1));
-        return energy ? std::optional(Named{*free, *contact, energy}) : std::nullopt;
-    };
-    const auto set = [&arguments, named](const std::string& word) {
-        const Named orbit = named(word).value();
+    const auto set = [&arguments](const std::string& word) {
+        const OrbitWord orbit = orbit_in(word).value();
         arguments.free_steps = orbit.free;
         arguments.contact_steps = orbit.contact;
         if (!orbit.energy) return;
@@ -181,21 +165,11 @@ void one_orbit(CLI::App& command, Arguments& arguments) {
         .add_option_function<std::string>("--orbit", set,
                                           "one stored orbit: free and contact steps, then an energy (E/E_g; with a J "
                                           "behind it joules), without one its least-energy orbit")
-        ->check({[named](const std::string& word) {
-                     return named(word) ? std::string()
-                                        : "expected R,P or R,P,ENERGY such as 60,10,12.6, got " + shortened(word);
+        ->check({[](const std::string& word) {
+                     return orbit_in(word) ? std::string()
+                                           : "expected R,P or R,P,ENERGY such as 60,10,12.6, got " + shortened(word);
                  },
                  "R,P[,E]"});
-}
-
-// Words between commas, each once.
-std::vector<std::string> parts(const std::string& word) {
-    std::vector<std::string> found;
-    std::istringstream stream(word + ',');
-    for (std::string part; std::getline(stream, part, ',');) {
-        if (std::find(found.begin(), found.end(), part) == found.end()) found.push_back(part);
-    }
-    return found;
 }
 
 void drawing(CLI::App& command, Arguments& arguments) {
@@ -210,18 +184,7 @@ void drawing(CLI::App& command, Arguments& arguments) {
             "--format", [&arguments](const std::string& word) { arguments.drawing.formats = parts(word); },
             "svg, png, pdf or several, as svg,pdf (default svg,png)")
         ->check(word_of("svg, png, pdf or several with commas between", known));
-    const auto size_in = [](const std::string& word) -> std::optional<std::array<std::optional<int>, 2>> {
-        constexpr int least = 100;
-        constexpr int most = 20'000;
-        const auto fits = [](const std::optional<int>& value) { return value && *value >= least && *value <= most; };
-        const std::size_t cross = word.find('x');
-        const auto width = number_in<int>(std::string_view(word).substr(0, cross));
-        if (!fits(width)) return std::nullopt;
-        if (cross == std::string::npos) return std::array{width, std::optional<int>()};
-        const auto height = number_in<int>(std::string_view(word).substr(cross + 1));
-        return fits(height) ? std::optional(std::array{width, height}) : std::nullopt;
-    };
-    const auto set = [&arguments, size_in](const std::string& word) {
+    const auto set = [&arguments](const std::string& word) {
         const auto size = size_in(word).value();
         arguments.drawing.width = size[0];
         arguments.drawing.height = size[1];
@@ -231,7 +194,7 @@ void drawing(CLI::App& command, Arguments& arguments) {
             "--size", set,
             "WIDTH or WIDTHxHEIGHT in pixels, of a PDF in points (1/72 inch); letters and "
             "lines grow with the width")
-        ->check({[size_in](const std::string& word) {
+        ->check({[](const std::string& word) {
                      return size_in(word) ? std::string()
                                           : "expected WIDTH or WIDTHxHEIGHT of 100 to 20000, such as 1600x1000, got " +
                                                 shortened(word);
@@ -277,7 +240,8 @@ std::vector<Entry> commands() {
           energy("energy E/E_g, or in joules with a J behind it: 12.6, 0.8J; without it the least-energy orbit", false),
           objective, solver, flag("--json", &Arguments::json, "one JSON object on stdout instead of text"),
           [](CLI::App& command, Arguments& arguments) {
-              command.add_option("--out", arguments.out, "folder for the orbit's charts, curves.csv and orbit.json");
+              command.add_option("--out", arguments.out,
+                                 "folder for the orbit's charts, orbit-curves.csv and orbit.json");
           },
           flag("--verbose", &Arguments::verbose, "also what presolve took from the conditions")},
          "Examples:\n"
