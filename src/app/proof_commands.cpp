@@ -152,9 +152,15 @@ private:
         const Proof proof{certificate, true, {}};
         if (proof.certificate.claim == Certificate::Claim::nonempty) count(proof, *proof.certificate.kind);
         if (proof.certificate.optimum) {
-            if (!objective_ || proof.certificate.optimum->energy != energy_)
-                refuse("no optimum at another energy", got + " with one");
-            optima_.add(*proof.certificate.optimum);
+            const Optimum& optimum = *proof.certificate.optimum;
+            const bool shock = optimum.objective == Optimum::Of::least_shock;
+            if (!objective_ || optimum.energy != energy_ || shock != (*objective_ == Objective::least_shock))
+                refuse("no optimum of another objective or energy", got + " with one");
+            optima_.add(optimum);
+        } else if (objective_) {
+            PatternProblem problem = pattern_problem(next(), gap_sign_);
+            if (has_optimum(problem) && certified_optimum(problem, *objective_, energy_).certificate)
+                refuse("an optimum of " + got, "none");
         }
         ++done_;
         ++proved_;

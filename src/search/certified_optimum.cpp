@@ -128,7 +128,7 @@ public:
                 if (k >= 1 && k <= columns && try_window(k)) return found();
             }
         }
-        return {std::nullopt, 0, "optimum: " + reason_};
+        return {std::nullopt, 0, reason_};
     }
 
 private:
@@ -163,7 +163,7 @@ private:
         const double sum = gamma_.sum();
         const auto mu = Window(k, closure, gamma_.squaredNorm() / (sum * sum), reduction_.gap_sign == 0).multiplier();
         if (!mu) {
-            reason_ = "no multiplier for a window of " + std::to_string(k) + " columns";
+            reason_ = "optimum: no multiplier for a window of " + std::to_string(k) + " columns";
             return false;
         }
         optimum_.window = k;

@@ -59,6 +59,20 @@ TEST_F(Program, BestOrbitsAreCertifiedAtAnEnergy) {
         EXPECT_EQ(checked.exit_code, 0) << checked.out;
         EXPECT_NE(checked.out.find(" best orbits among them, largest gap "), std::string::npos) << checked.out;
     }
+    // What a run for one objective left is not gone on with for the other, nor without optima where they are asked.
+    for (const auto& [kept, expected] : {std::pair{contents(path("least-force")), "no optimum of another objective"},
+                                         std::pair{std::string(), "an optimum of"}}) {
+        std::string text = kept;
+        if (text.empty()) {
+            ASSERT_EQ(run({"prove", scene_, "--period", "0", "4", "--quiet", "--out", path("plain")}).exit_code, 0);
+            text = contents(path("plain"));
+        }
+        write("resumed.part", text);
+        const Result resumed = run(with(words, {path("resumed"), "--objective", "least-shock", "--resume"}));
+        EXPECT_EQ(resumed.exit_code, 2);
+        EXPECT_NE(resumed.err.find(expected), std::string::npos) << resumed.err;
+        EXPECT_EQ(contents(path("resumed.part")), text);
+    }
     // A bound that is raised is refused.
     std::string forged = contents(path("least-shock"));
     const auto at = forged.find("\"bound\":\"") + 9;

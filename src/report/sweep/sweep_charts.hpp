@@ -39,8 +39,8 @@ struct OrbitChoice {
 /// Motion and fields of one orbit, files NAME-motion and NAME-fields.
 [[nodiscard]] std::vector<Chart> charts_of(const Scene& scene, const StoredOrbit& stored, const std::string& name);
 
-/// Those of one orbit of a sweep: its least-energy orbit without a level (energy units), else the one at the nearest
-/// level. Throws InputError, which names the folder, where the sweep has none of this pattern.
+/// Those of one orbit of a sweep: its least-energy orbit without a level (energy units), else the one at that level, to
+/// 1 %. Throws InputError, which names the folder and the pattern's orbits, where the sweep has none.
 [[nodiscard]] std::vector<Chart> charts_of(const StoredSweep& sweep, const std::filesystem::path& folder,
                                            int free_steps, int contact_steps, std::optional<double> level);
 
