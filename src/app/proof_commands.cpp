@@ -12,6 +12,7 @@
 
 #include "nsma/numerics/interruption.hpp"
 #include "nsma/search/certified_optimum.hpp"
+#include "nsma/search/orbit_solver.hpp"
 #include "nsma/search/pattern_problem.hpp"
 #include "nsma/report/input_error.hpp"
 #include "report/certificate_file.hpp"
@@ -36,8 +37,7 @@ struct OptimumCounts {
 
     void add(const Optimum& optimum) {
         ++count;
-        if (optimum.value > 0)
-            gap = std::max(gap, std::abs(to_double((optimum.value - optimum.bound) / optimum.value)));
+        gap = std::max(gap, relative_gap(optimum));
     }
     [[nodiscard]] std::string text() const { return fmt::format("largest gap {:.1e}", gap); }
 };
@@ -46,12 +46,12 @@ struct OptimumCounts {
 class Proofs {
 public:
     Proofs(const Scene& scene, const std::vector<Pattern>& patterns)
-        : patterns_(patterns), gap_sign_(scene.bar.gap_sign()) {}
+        : bar_(scene.bar), patterns_(patterns), gap_sign_(scene.bar.gap_sign()) {}
 
     /// Asks for the best orbit at an energy (E/E_unit) as well, of every contact motion that has one.
-    void ask_optima(Objective objective, const Rational& energy) {
-        objective_ = objective;
-        energy_ = energy;
+    void ask_optima(Objective objective, double energy) {
+        request_.objective = objective;
+        request_.level = energy;
     }
 
     [[nodiscard]] long done() const { return done_; }
@@ -62,7 +62,8 @@ public:
     [[nodiscard]] std::string text() const {
         const std::string text = fmt::format("{} patterns, {} proved; {} admissible ({}), greatest energy exact for {}",
                                              done_, proved_, admissible_.total(), admissible_.text(), exact_);
-        return objective_ ? fmt::format("{}\n{} best orbits proved, {}", text, optima_.count, optima_.text()) : text;
+        return request_.level ? fmt::format("{}\n{} best orbits proved, {}", text, optima_.count, optima_.text())
+                              : text;
     }
 
     /// Throws unless the file, where there is one, holds nothing but certificates that this run writes again.
@@ -121,7 +122,7 @@ public:
         PatternProblem problem = pattern_problem(pattern, gap_sign_);
         Proof& proof = problem.proof;
         if (problem.verdict == Verdict::admissible) count(proof, *problem.kind);
-        if (objective_ && has_optimum(problem)) prove_optimum(problem);
+        if (request_.level && has_optimum(problem)) prove_optimum(problem);
         ++done_;
         if (proof.verdict_proved) {
             ++proved_;
@@ -154,12 +155,13 @@ private:
         if (proof.certificate.optimum) {
             const Optimum& optimum = *proof.certificate.optimum;
             const bool shock = optimum.objective == Optimum::Of::least_shock;
-            if (!objective_ || optimum.energy != energy_ || shock != (*objective_ == Objective::least_shock))
+            if (!request_.level || optimum.energy != decimal(*request_.level) ||
+                shock != (request_.objective == Objective::least_shock))
                 refuse("no optimum of another objective or energy", got + " with one");
             optima_.add(optimum);
-        } else if (objective_) {
+        } else if (request_.level) {
             PatternProblem problem = pattern_problem(next(), gap_sign_);
-            if (has_optimum(problem) && certified_optimum(problem, *objective_, energy_).certificate)
+            if (has_optimum(problem) && certified_optimum(problem, best(problem)).certificate)
                 refuse("an optimum of " + got, "none");
         }
         ++done_;
@@ -167,11 +169,13 @@ private:
     }
 
     [[nodiscard]] bool has_optimum(const PatternProblem& problem) const {
-        return problem.kind == PatternKind::contact && !outside(problem.interval, to_double(energy_));
+        return problem.kind == PatternKind::contact && !outside(problem.interval, *request_.level);
     }
 
+    [[nodiscard]] OrbitAnswer best(const PatternProblem& problem) { return solver_.solve(bar_, problem, request_); }
+
     void prove_optimum(PatternProblem& problem) {
-        OptimumProof found = certified_optimum(problem, *objective_, energy_);
+        OptimumProof found = certified_optimum(problem, best(problem));
         if (!found.certificate) {
             open_ = true;
             const Pattern& pattern = problem.kernel.pattern;
@@ -187,13 +191,14 @@ private:
         admissible_.add(kind);
     }
 
+    const Bar& bar_;
     const std::vector<Pattern>& patterns_;
     int gap_sign_;
     long done_ = 0;
     long proved_ = 0;
-    long exact_ = 0;                      // greatest energies
-    std::optional<Objective> objective_;  // of the optima, where they are asked for
-    Rational energy_;
+    long exact_ = 0;  // greatest energies
+    OrbitSolver solver_;
+    OrbitRequest request_;  // of the optima; without a level none are asked for
     OptimumCounts optima_;
     bool open_ = false;  // an optimum could not be proved
     KindCounts admissible_;
@@ -211,7 +216,7 @@ int run_prove(const Arguments& arguments) {
             throw InputError(fmt::format("command line: --objective: expected least-shock or least-force, got {}",
                                          name(scene.objective)));
         }
-        proofs.ask_optima(scene.objective, decimal(*arguments.level(scene)));
+        proofs.ask_optima(scene.objective, *arguments.level(scene));
     }
     if (std::error_code code; !arguments.resume && !arguments.fresh && std::filesystem::exists(part, code)) {
         throw InputError(

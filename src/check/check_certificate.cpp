@@ -207,6 +207,11 @@ CheckResult check(const Certificate& certificate) {
     return {true, {}};
 }
 
+double relative_gap(const Optimum& optimum) {
+    const Rational& scale = optimum.objective == Optimum::Of::nearest ? optimum.energy : optimum.value;
+    return scale > 0 ? std::abs(to_double((optimum.value - optimum.bound) / scale)) : 0.0;
+}
+
 OptimumFacts optimum_facts(const Certificate& certificate) {
     OptimumFacts facts;
     facts.reason = refusal(certificate);

@@ -13,12 +13,10 @@ namespace {
 
 using Sign = CertificateTerms::Sign;
 
-// Fractions grow with the columns they pass: their work with the third power.
-constexpr int most_columns = 400;
+// Integers grow with the columns they pass: their work with the square, a second for so many.
+constexpr int most_columns = 10'000;
 
 constexpr unsigned most_multiplier_bits = 80;
-
-unsigned bits_of(const Integer& value) { return value == 0 ? 0 : msb(abs(value)) + 1; }
 
 // y_j = |beta_j| >= 0 of every column; the shock is 4 N R (|y|^2 - sum_j y_j y_{j+1} - closure y_m y_1) with R rounds.
 struct Ring {
@@ -49,53 +47,78 @@ Ring ring_of(const CertificateTerms& terms) {
 }
 
 // Half of the form y^T (A - mu) y on k columns in a row that are alike on both sides of their middle, or opposite;
-// A = 1 on the diagonal, -1/2 beside it, and -closure/2 between the ends. A tridiagonal matrix D over half the columns.
+// A = 1 on the diagonal, -1/2 beside it, and -closure/2 between the ends: a tridiagonal matrix over half the columns.
 struct Half {
-    std::vector<Rational> diagonal;
-    bool centre = false;  // the last is the middle column, which counts once
-
-    Half(int k, const Rational& mu, const Rational& closure, bool alike) : centre(alike && k % 2 == 1) {
-        const Rational side = alike ? -1 : 1;
-        diagonal.assign(static_cast<std::size_t>(k / 2), 1 - mu);
-        if (centre) diagonal.push_back((1 - mu) / 2);
-        if (diagonal.empty()) return;
-        if (k > 1) diagonal.front() += side * closure / 2;
-        if (k == 1) diagonal.front() -= closure / 2;
-        if (k % 2 == 0) diagonal.back() += side / 2;
-    }
+    int negative = 0;    // pivots
+    Integer sum, scale;  // e^T w of (A - mu) w = e is sum/scale
 };
 
-struct Solved {
-    int negative = 0;  // pivots
-    Rational sum;      // e^T w of (A - mu) w = e
-    Rational square;   // |w|^2
-};
-
-// Its pivots, and unless it is empty what it gives of the solution. Throws Invalid on a pivot that is zero.
-Solved solve(const Half& half) {
-    Solved result;
-    const std::size_t n = half.diagonal.size();
-    std::vector<Rational> pivots(n), right(n), solution(n);
-    for (std::size_t j = 0; j < n; ++j) {
+// Row j says x_{j+1} = 2 a_j x_j - x_{j-1} - 2 r_j, so that x_j = u_j x_1 + v_j; the leading minors are u_{j+1}/2^j.
+// All in integers, u_j and v_j times q^{j-1}. Throws Invalid on a pivot that is zero.
+Half solve(int k, const Rational& mu, const Rational& closure, bool alike) {
+    const Integer q = lcm(denominator(mu), denominator(closure));
+    const auto whole = [&q](const Rational& value) -> Integer { return numerator(value) * (q / denominator(value)); };
+    const bool centre = alike && k % 2 == 1;  // the last is the middle column, which counts once
+    const int n = k / 2 + (centre ? 1 : 0);
+    const int side = alike ? -1 : 1;
+    const Integer stiffness = q - whole(mu);
+    const Integer square = q * q;
+    Integer u = 1, u_before = 0, v = 0, v_before = 0, power = q;
+    Integer u_sum = 0, v_sum = 0, scale = 1;
+    Half half;
+    for (int j = 0; j < n; ++j) {
         stop_point();
-        pivots[j] = half.diagonal[j];
-        right[j] = half.centre && j + 1 == n ? Rational(1) / 2 : Rational(1);
+        const bool middle = centre && j + 1 == n;
+        Integer diagonal = middle ? stiffness : Integer(2 * stiffness);
+        if (j == 0) diagonal += (k > 1 ? side : -1) * whole(closure);
+        if (j + 1 == n && k % 2 == 0) diagonal += side * q;
         if (j > 0) {
-            pivots[j] -= Rational(1) / 4 / pivots[j - 1];
-            right[j] += right[j - 1] / 2 / pivots[j - 1];
+            u_sum *= q;
+            v_sum *= q;
+            scale *= q;
         }
-        if (pivots[j] == 0) invalid("optimum: the multiplier makes a pivot zero");
-        result.negative += pivots[j] < 0 ? 1 : 0;
+        u_sum += (middle ? 1 : 2) * u;
+        v_sum += (middle ? 1 : 2) * v;
+        Integer u_next = diagonal * u - square * u_before;
+        Integer v_next = diagonal * v - square * v_before - (middle ? 1 : 2) * power;
+        if (u_next == 0) invalid("optimum: the multiplier makes a pivot zero");
+        half.negative += u_next.sign() != u.sign() ? 1 : 0;
+        u_before.swap(u);
+        v_before.swap(v);
+        u.swap(u_next);
+        v.swap(v_next);
+        power *= q;
     }
-    for (std::size_t j = n; j-- > 0;) {
-        solution[j] = right[j];
-        if (j + 1 < n) solution[j] += solution[j + 1] / 2;
-        solution[j] /= pivots[j];
-        const int times = half.centre && j + 1 == n ? 1 : 2;
-        result.sum += times * solution[j];
-        result.square += times * solution[j] * solution[j];
+    half.sum = v_sum * u - u_sum * v;
+    half.scale = scale * u;
+    if (half.scale < 0) {
+        half.sum = -half.sum;
+        half.scale = -half.scale;
     }
+    return half;
+}
+
+// Not above value/divisor, by less than 2^-bound_bits.
+Rational quotient_below(const Rational& value, const Rational& divisor) {
+    constexpr unsigned bound_bits = 160;
+    const Integer over = (numerator(value) * denominator(divisor)) << bound_bits;
+    const Integer under = denominator(value) * numerator(divisor);
+    Integer quotient = over / under;
+    if (quotient * under != over && over.sign() * under.sign() < 0) --quotient;
+    Rational result(quotient);
+    result /= Integer(1) << bound_bits;
     return result;
+}
+
+void expect_short(const Rational& value) {
+    const auto bits = [](const Integer& part) { return part == 0 ? 0U : msb(abs(part)) + 1U; };
+    if (bits(numerator(value)) > most_multiplier_bits || bits(denominator(value)) > most_multiplier_bits)
+        invalid("optimum: expected multipliers of at most " + std::to_string(most_multiplier_bits) + " bits");
+}
+
+// Whether sum y = s and |y|^2 = q leave the one point whose entries are all equal.
+bool is_centre(const CertificateTerms& terms, const Rational& s, const Rational& q) {
+    return s > 0 && s * s == q * static_cast<int>(terms.dimension);
 }
 
 // The least of y^T A y over sum y = s, |y|^2 = q (of a closed gap: |y|^2 = q alone), y >= 0.
@@ -104,16 +127,15 @@ Rational least_shock(const CertificateTerms& terms, const Optimum& optimum, cons
     const auto m = static_cast<int>(terms.dimension);
     const int k = optimum.window;
     const Rational& mu = optimum.multiplier;
+    if (is_centre(terms, s, q)) return q / m * (1 - closure);
     if (k < 1 || k > m || k > most_columns) {
         invalid("optimum: expected a window of 1.." + std::to_string(std::min(m, most_columns)) + " columns, got " +
                 std::to_string(k));
     }
-    if (bits_of(numerator(mu)) > most_multiplier_bits || bits_of(denominator(mu)) > most_multiplier_bits)
-        invalid("optimum: expected a multiplier of at most " + std::to_string(most_multiplier_bits) + " bits");
+    expect_short(mu);
     const Rational ends = k == m ? closure : Rational(0);
-    const Solved alike = solve(Half(k, mu, ends, true));
-    const Solved opposite = solve(Half(k, mu, ends, false));
-    if (opposite.negative > 0) invalid("optimum: the multiplier is too large for the window");
+    const Half alike = solve(k, mu, ends, true);
+    if (solve(k, mu, ends, false).negative > 0) invalid("optimum: the multiplier is too large for the window");
     if (terms.certificate.gap_sign == 0) {
         if (k != m || alike.negative > 0) invalid("optimum: expected a multiplier below every eigenvalue");
         return mu * q;
@@ -121,13 +143,66 @@ Rational least_shock(const CertificateTerms& terms, const Optimum& optimum, cons
     // A - mu + kappa e e^T is positive semidefinite from this kappa on.
     if (alike.negative > 1 || alike.sum == 0 || (alike.sum < 0) != (alike.negative == 1))
         invalid("optimum: the multiplier is too large for the window");
-    if (k < m) {
-        // The best orbit on the window has a multiplier that is not less; so those on more columns lean.
-        if (alike.square * s * s > q * alike.sum * alike.sum) invalid("optimum: the multiplier is that of more energy");
-        const Solved wider = solve(Half(k + 1, mu, k + 1 == m ? closure : Rational(0), false));
-        if (wider.negative == 0) invalid("optimum: a wider window is not excluded");
+    if (k < m && solve(k + 1, mu, k + 1 == m ? closure : Rational(0), false).negative == 0)
+        invalid("optimum: a wider window is not excluded");
+    Rational share = s * s;
+    share *= alike.scale;
+    return mu * q + quotient_below(share, Rational(alike.sum));
+}
+
+// Not above sqrt(value), value >= 0.
+Rational root_below(const Rational& value) {
+    constexpr unsigned root_bits = 80;
+    const Integer whole = (numerator(value) << (2 * root_bits)) / denominator(value);
+    Rational root(sqrt(whole));
+    root /= Integer(1) << root_bits;
+    return root;
+}
+
+// The least of |beta - t|^2 over the same points: with y = |beta| and t alike
+// t.y = nu sum y + sum (t_j - nu) y_j <= nu sum y + mu q/2 + sum (t_j - nu)_+^2/(2 mu) for any nu and mu > 0.
+Rational least_distance(const CertificateTerms& terms, const Optimum& optimum, const Fractions& reference,
+                        const Rational& s, const Rational& q) {
+    const int sign = terms.signs.front() == Sign::nonnegative ? 1 : -1;
+    const Rational& mu = optimum.multiplier;
+    const Rational& nu = optimum.level;
+    Rational product;  // t.y, at most
+    if (is_centre(terms, s, q)) {
+        for (const std::int64_t value : reference.numerators) product += sign * value;
+        product *= s / static_cast<int>(terms.dimension) / reference.denominator;
+    } else {
+        expect_short(mu);
+        expect_short(nu);
+        if (mu < 0) invalid("optimum: expected a multiplier >= 0");
+        const bool closed = terms.certificate.gap_sign == 0;
+        if (closed && nu > 0) invalid("optimum: expected a level <= 0 of a closed gap");
+        const Integer threshold = numerator(nu) * reference.denominator;
+        Integer squares = 0;
+        for (const std::int64_t value : reference.numerators) {
+            const Integer above = sign * value * denominator(nu) - threshold;
+            if (above > 0) squares += above * above;
+        }
+        Rational over(squares);
+        over /= denominator(nu) * reference.denominator;
+        over /= denominator(nu) * reference.denominator;
+        if (mu == 0 && over != 0) invalid("optimum: expected a multiplier > 0");
+        // Of a closed gap the sum is at least |y|, and nu <= 0.
+        product = nu * (closed ? root_below(q) : s) + mu * q / 2;
+        if (mu > 0) product += over / (2 * mu);
     }
-    return mu * q + s * s / alike.sum;
+    const Rational distance = q + square(reference) - 2 * product;
+    return distance > 0 ? distance : Rational(0);
+}
+
+Rational distance_of(const Fractions& orbit, const Fractions& reference) {
+    Whole products = 0;
+    for (std::size_t c = 0; c < orbit.numerators.size(); ++c)
+        products += Whole{orbit.numerators[c]} * reference.numerators[c];
+    Rational twice(products);
+    twice *= 2;
+    twice /= orbit.denominator;
+    twice /= reference.denominator;
+    return square(orbit) + square(reference) - twice;
 }
 
 // A largest entry below t leaves less than q of the sum of squares: as many t as fit, and a rest.
@@ -158,7 +233,8 @@ Rational force_of(const CertificateTerms& terms, const Fractions& orbit) {
 }  // namespace
 
 OptimumFacts proved_optimum(const CertificateTerms& terms, const Optimum& optimum) {
-    if (terms.certificate.kind != PatternKind::contact) invalid("optimum: expected a contact motion");
+    if (terms.certificate.kind != PatternKind::contact && terms.certificate.kind != PatternKind::stuck)
+        invalid("optimum: expected a motion with contact");
     // With y = |beta|: all of one sign, and COND2 says the sum, or of a closed gap nothing.
     for (std::size_t c = 0; c < terms.dimension; ++c) {
         const Sign sign = terms.signs[c];
@@ -181,6 +257,10 @@ OptimumFacts proved_optimum(const CertificateTerms& terms, const Optimum& optimu
         facts.value = force_of(terms, orbit);
         check_least_peak(terms, optimum, s, q);
         facts.bound = optimum.bound;
+    } else if (optimum.objective == Optimum::Of::nearest) {
+        const Fractions reference = terms.dense(optimum.reference, "reference");
+        facts.value = terms.factor * distance_of(orbit, reference);
+        facts.bound = terms.factor * least_distance(terms, optimum, reference, s, q);
     } else {
         const Ring ring = ring_of(terms);
         facts.value = shock_of(ring, orbit);

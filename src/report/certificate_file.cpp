@@ -18,9 +18,9 @@ namespace {
 // Fields keep their order, so that equal certificates are equal bytes.
 using Json = nlohmann::ordered_json;
 constexpr int format_version = 3;
-constexpr int deepest = 16;                                          // brackets; those of a certificate go four deep
-constexpr std::array claim_names{"trivial", "empty", "nonempty"};    // by Claim
-constexpr std::array objective_names{"least-shock", "least-force"};  // by Optimum::Of
+constexpr int deepest = 16;                                        // brackets; those of a certificate go four deep
+constexpr std::array claim_names{"trivial", "empty", "nonempty"};  // by Claim
+constexpr std::array objective_names{"least-shock", "least-force", "nearest"};  // by Optimum::Of
 
 // Visits the fields of a certificate in the order of the file.
 template <class Fields, class Visitor>
@@ -52,6 +52,9 @@ void for_each_optimum_field(Fields& optimum, Visitor&& visit) {
     visit("orbit", optimum.orbit);
     visit("window", optimum.window);
     visit("multiplier", optimum.multiplier);
+    if (optimum.objective != Optimum::Of::nearest) return;
+    visit("level", optimum.level);
+    visit("reference", optimum.reference);
 }
 
 Json json_of(int value) { return value; }
@@ -143,7 +146,7 @@ private:
     void read(const Json& json, const char* key, Optimum::Of& objective) const {
         const auto* known =
             std::find_if(objective_names.begin(), objective_names.end(), [&](auto one) { return json == one; });
-        if (known == objective_names.end()) fail("least-shock or least-force", json, key);
+        if (known == objective_names.end()) fail("least-shock, least-force or nearest", json, key);
         objective = static_cast<Optimum::Of>(known - objective_names.begin());
     }
     void read(const Json& json, const char* key, Optimum& optimum) const {

@@ -1,8 +1,8 @@
 #include "nsma/search/certified_optimum.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 #include "simplex_optimum.hpp"
@@ -50,12 +50,10 @@ public:
     }
 
     /// The greatest that is low enough.
-    [[nodiscard]] std::optional<double> multiplier() const {
+    [[nodiscard]] double multiplier() const {
         double lo = -1;
-        while (!low_enough(lo)) {
-            lo *= 2;
-            if (lo < -1e9) return std::nullopt;
-        }
+        // Where next to nothing is left to choose the multiplier has no lower end; whatever it is proves something.
+        while (!low_enough(lo) && lo > -1e9) lo *= 2;
         double hi = 2;
         for (int i = 0; i < 200 && hi - lo > 1e-16 * std::abs(lo); ++i) {
             const double middle = 0.5 * (lo + hi);
@@ -106,72 +104,120 @@ private:
 
 class Certifier {
 public:
-    Certifier(const PatternProblem& problem, Objective objective, const Rational& energy)
-        : problem_(problem), reduction_(problem.set.reduction), certificate_(problem.proof.certificate) {
-        optimum_.objective = objective == Objective::least_shock ? Optimum::Of::least_shock : Optimum::Of::least_force;
-        optimum_.energy = energy;
-        gamma_ = simplex_optimum(problem.kernel, problem.set, objective, to_double(energy), {});
-        round_orbit();
+    Certifier(const PatternProblem& problem, const OrbitAnswer& answer)
+        : problem_(problem),
+          answer_(answer),
+          reduction_(problem.set.reduction),
+          closed_(reduction_.gap_sign == 0),
+          certificate_(problem.proof.certificate) {
+        optimum_.energy = decimal(*answer.level);
+        const Eigen::VectorXd beta = answer.orbit->beta.cwiseAbs();
+        sum_ = closed_ ? 1.0 : beta.sum();
+        bits_ = closed_ ? most_bits - std::max(std::ilogb(beta.maxCoeff()) + 1, 0) : orbit_bits;
+        optimum_.orbit = rounded(beta, true);
     }
 
     OptimumProof run() {
-        const auto columns = static_cast<int>(gamma_.size());
-        if (optimum_.objective == Optimum::Of::least_force) {
-            const double peak = gamma_.maxCoeff() * 2 * problem_.kernel.pattern.cells;
-            for (const double slack : {1e-14, 1e-12, 1e-10, 1e-8}) {
-                optimum_.bound = relative_down(exact(peak * (1 - slack)), value_bits);
-                if (proves()) return found();
-            }
-        } else {
-            const auto covered = static_cast<int>((gamma_.array() > 1e-9 * gamma_.maxCoeff()).count());
-            for (const int k : {covered, covered + 1, covered - 1}) {
-                if (k >= 1 && k <= columns && try_window(k)) return found();
-            }
-        }
-        return {std::nullopt, 0, reason_};
+        if (bits_ >= 0) try_bounds();
+        OptimumProof proof{std::nullopt, 0, check_seconds_, reason_};
+        if (!reason_.empty()) return proof;
+        proof.gap = relative_gap(optimum_);
+        proof.certificate = std::move(certificate_);
+        return proof;
     }
 
 private:
-    // A point of the set near gamma: whole multiples of a small unit, of a gap those of its share of COND2's sum.
-    void round_orbit() {
-        const bool closed = reduction_.gap_sign == 0;
-        const double whole = closed ? 1.0 : gamma_.sum();
-        const int bits = closed ? most_bits - std::max(std::ilogb(gamma_.maxCoeff()) + 1, 0) : orbit_bits;
-        if (bits < 0) return;  // beyond what a checker reads
-        const Integer scale = Integer(1) << bits;
+    void try_bounds() {
+        switch (answer_.objective) {
+            case Objective::least_force: return bound_peak();
+            case Objective::nearest: return bound_distance();
+            default: return bound_shock();
+        }
+    }
+
+    // A vector in whole multiples of a small unit, of a gap those of its share of COND2's sum, which a point has.
+    [[nodiscard]] RationalVector rounded(const Eigen::VectorXd& y, bool point) const {
+        if (bits_ < 0) return {};  // beyond what a checker reads
+        const Integer scale = Integer(1) << bits_;
         std::vector<Integer> parts;
         Integer left = scale;
-        for (const double value : gamma_) {
-            parts.emplace_back(std::llround(std::ldexp(value / whole, bits)));
+        for (const double value : y) {
+            parts.emplace_back(std::llround(std::ldexp(value / sum_, bits_)));
             left -= parts.back();
         }
-        if (!closed) *std::max_element(parts.begin(), parts.end()) += left;
+        if (!closed_ && point) *std::max_element(parts.begin(), parts.end()) += left;
         Rational unit = reduction_.flip;
-        if (!closed) unit *= Rational(reduction_.gap_sign) / reduction_.contact_row[0];
+        if (!closed_) unit *= Rational(reduction_.gap_sign) / reduction_.contact_row[0];
         unit /= scale;
+        RationalVector entries;
         for (std::size_t j = 0; j < parts.size(); ++j) {
             if (parts[j] == 0) continue;
             Rational value = unit;
             value *= parts[j];
-            optimum_.orbit.emplace_back(static_cast<int>(j), value);
+            entries.emplace_back(static_cast<int>(j), value);
+        }
+        return entries;
+    }
+
+    [[nodiscard]] Eigen::VectorXd best() const {
+        return simplex_optimum(problem_.kernel, problem_.set, answer_.objective, *answer_.level, answer_.reference);
+    }
+
+    void bound_peak() {
+        optimum_.objective = Optimum::Of::least_force;
+        const double peak = best().maxCoeff() * 2 * problem_.kernel.pattern.cells;
+        for (const double slack : {1e-14, 1e-12, 1e-10, 1e-8}) {
+            optimum_.bound = relative_down(exact(peak * (1 - slack)), value_bits);
+            if (proves()) return;
         }
     }
 
-    bool try_window(int k) {
-        const auto columns = static_cast<int>(gamma_.size());
-        const double closure = k == columns ? shock_closure(problem_.kernel, reduction_) : 0.0;
-        const double sum = gamma_.sum();
-        const auto mu = Window(k, closure, gamma_.squaredNorm() / (sum * sum), reduction_.gap_sign == 0).multiplier();
-        if (!mu) {
-            reason_ = "optimum: no multiplier for a window of " + std::to_string(k) + " columns";
-            return false;
+    void bound_shock() {
+        optimum_.objective = Optimum::Of::least_shock;
+        const Eigen::VectorXd gamma = best();
+        const auto columns = static_cast<int>(gamma.size());
+        const auto covered = static_cast<int>((gamma.array() > 1e-9 * gamma.maxCoeff()).count());
+        for (const int k : {covered, covered + 1, covered - 1}) {
+            if (k >= 1 && k <= columns && try_window(k, gamma)) return;
         }
+    }
+
+    bool try_window(int k, const Eigen::VectorXd& gamma) {
+        const double closure = k == gamma.size() ? shock_closure(problem_.kernel, reduction_) : 0.0;
+        const double sum = gamma.sum();
+        const double mu = Window(k, closure, gamma.squaredNorm() / (sum * sum), closed_).multiplier();
         optimum_.window = k;
         for (const double slack : {1e-13, 1e-11, 1e-9, 1e-7}) {
-            optimum_.multiplier = rounded_down(exact(*mu - slack * std::max(1.0, std::abs(*mu))), multiplier_bits);
+            optimum_.multiplier = rounded_down(exact(mu - slack * std::max(1.0, std::abs(mu))), multiplier_bits);
             if (proves()) return true;
         }
         return false;
+    }
+
+    // The best of the bounds nu s + sqrt(q sum (t_j - nu)_+^2) on t.y, convex in nu.
+    void bound_distance() {
+        optimum_.objective = Optimum::Of::nearest;
+        const Eigen::VectorXd target = reduction_.gamma(nearest_beta(problem_.kernel, answer_.reference));
+        const double q = *answer_.level / reduction_.energy_factor;
+        const auto above = [&](double nu) { return (target.array() - nu).max(0.0).matrix().eval(); };
+        const auto rising = [&](double nu) { return sum_ * above(nu).norm() > std::sqrt(q) * above(nu).sum(); };
+        double hi = target.maxCoeff();
+        if (closed_) {
+            hi = std::min(hi, 0.0);
+        } else {
+            double lo = hi - (hi - target.minCoeff()) - std::abs(hi);
+            for (int i = 0; i < 30 && rising(lo); ++i) lo = hi - 2 * (hi - lo);
+            for (int i = 0; i < 200 && hi - lo > 1e-16 * std::abs(lo); ++i) {
+                const double middle = 0.5 * (lo + hi);
+                (rising(middle) ? hi : lo) = middle;
+            }
+        }
+        optimum_.reference = rounded(target, false);
+        optimum_.level = rounded_down(exact(hi), multiplier_bits);
+        // A little more, so that rounding never makes it zero.
+        const double multiplier = above(to_double(optimum_.level)).norm() / std::sqrt(q) + 0x1p-40;
+        optimum_.multiplier = rounded_down(exact(multiplier), multiplier_bits);
+        (void)proves();
     }
 
     // Whether what there is proves something; then the claims follow, rounded to their own disadvantage.
@@ -184,40 +230,38 @@ private:
         optimum_.value = -relative_down(-facts.value, value_bits);
         optimum_.bound = relative_down(facts.bound, value_bits);
         certificate_.optimum = optimum_;
+        const auto begin = std::chrono::steady_clock::now();
         const CheckResult result = check(certificate_);
+        check_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         reason_ = result.reason;
         return result.valid;
     }
 
-    OptimumProof found() {
-        OptimumProof proof;
-        if (optimum_.value > 0) proof.gap = std::abs(to_double((optimum_.value - optimum_.bound) / optimum_.value));
-        proof.certificate = std::move(certificate_);
-        return proof;
-    }
-
     const PatternProblem& problem_;
+    const OrbitAnswer& answer_;
     const Reduction& reduction_;
+    bool closed_;
     Certificate certificate_;
     Optimum optimum_;
-    Eigen::VectorXd gamma_;
-    std::string reason_;
+    double sum_ = 0;
+    int bits_ = 0;  // of the unit of all vectors
+    double check_seconds_ = 0;
+    std::string reason_ = "optimum: the energy is beyond what a checker reads";
 };
 
 }  // namespace
 
-OptimumProof certified_optimum(const PatternProblem& problem, Objective objective, const Rational& energy) {
-    if (objective != Objective::least_shock && objective != Objective::least_force)
-        throw std::invalid_argument("objective: expected least-shock or least-force, got " +
-                                    std::string(name(objective)));
-    const auto no = [](std::string reason) { return OptimumProof{std::nullopt, 0, std::move(reason)}; };
+OptimumProof certified_optimum(const PatternProblem& problem, const OrbitAnswer& answer) {
+    const auto no = [](std::string reason) { return OptimumProof{std::nullopt, 0, 0, std::move(reason)}; };
+    if (!answer.orbit) return no("optimum: expected an orbit, got none");
     if (!problem.proof.verdict_proved) return no(problem.proof.unproved);
-    if (problem.kind != PatternKind::contact) return no("optimum: expected a contact motion");
-    const Certificate& certificate = problem.proof.certificate;
-    const bool inside = energy > 0 && (!certificate.energy_least || energy >= *certificate.energy_least) &&
-                        (!certificate.energy_bound || energy <= *certificate.energy_bound);
-    if (!inside) return no("optimum: no orbit of this pattern has that energy");
-    return Certifier(problem, objective, energy).run();
+    if (!answer.level) {
+        const bool least = answer.objective != Objective::max_energy;
+        if (!least && !problem.proof.exact_greatest()) return no("optimum: the greatest energy is not exact");
+        return {problem.proof.certificate, 0, 0, {}};
+    }
+    if (problem.kind == PatternKind::free) return no("optimum: expected a motion with contact");
+    return Certifier(problem, answer).run();
 }
 
 }  // namespace nsma

@@ -294,6 +294,10 @@ bool ipopt_is_usual(const OrbitSolverOptions& options) {
 
 bool outside(const EnergyInterval& interval, double level) { return below(interval, level) || above(interval, level); }
 
-Eigen::VectorXd reference_window(const Orbit& orbit) { return wave_basis(orbit.kernel) * orbit.beta; }
+Eigen::VectorXd reference_window(const Orbit& orbit) {
+    return Eigen::VectorXd::NullaryExpr(2 * static_cast<Eigen::Index>(orbit.kernel.pattern.cells), [&](Eigen::Index n) {
+        return orbit.kernel.wave(orbit.beta, static_cast<int>(n));
+    });
+}
 
 }  // namespace nsma

@@ -220,6 +220,16 @@ double shock_closure(const Kernel& kernel, const Reduction& reduction) {
     return static_cast<double>(sum) / rounds;
 }
 
+VectorXd nearest_beta(const Kernel& kernel, const VectorXd& window) {
+    VectorXd sums = VectorXd::Zero(kernel.dimension());
+    for (int n = 0; n < window.size(); ++n) {
+        const int step = n % kernel.pattern.period_steps();
+        if (const int column = kernel.column(step); column >= 0)
+            sums[column] += kernel.sign[static_cast<std::size_t>(step)] * window[n];
+    }
+    return sums * kernel.classes / static_cast<double>(window.size());
+}
+
 VectorXd simplex_optimum(const Kernel& kernel, const AdmissibleSet& set, Objective objective, double energy,
                          const VectorXd& reference) {
     const Reduction& reduction = set.reduction;
@@ -227,14 +237,7 @@ VectorXd simplex_optimum(const Kernel& kernel, const AdmissibleSet& set, Objecti
                              energy / reduction.energy_factor};
     if (objective == Objective::least_force) return least_peak_point(level);
     if (objective == Objective::least_shock) return smoothest_point(level, shock_closure(kernel, reduction));
-    // The linear form that is the scalar product with the reference's waves.
-    VectorXd target = VectorXd::Zero(kernel.dimension());
-    for (int n = 0; n < reference.size(); ++n) {
-        const int step = n % kernel.pattern.period_steps();
-        if (const int column = kernel.column(step); column >= 0)
-            target[column] += kernel.sign[static_cast<std::size_t>(step)] * reference[n];
-    }
-    return nearest_point(level, reduction.gamma(target));
+    return nearest_point(level, reduction.gamma(nearest_beta(kernel, reference)));
 }
 
 }  // namespace nsma

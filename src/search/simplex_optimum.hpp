@@ -31,6 +31,9 @@ struct SimplexLevel {
 /// meets the first of the next. The reduction must be of a simplex.
 [[nodiscard]] double shock_closure(const Kernel& kernel, const Reduction& reduction);
 
+/// Beta (size m) of the orbit of a kernel that is nearest to a window b_0..b_{2N-1}, conditions aside.
+[[nodiscard]] Eigen::VectorXd nearest_beta(const Kernel& kernel, const Eigen::VectorXd& window);
+
 /// The best reduced point of a set that is a simplex at a level (E/E_unit) it attains. `reference`: the window
 /// b_0..b_{2N-1} of `nearest`.
 [[nodiscard]] Eigen::VectorXd simplex_optimum(const Kernel& kernel, const AdmissibleSet& set, Objective objective,

@@ -38,15 +38,47 @@ Eigen::MatrixXd shock_matrix(const PatternProblem& problem) {
     return a;
 }
 
-/// The least value at an energy, by looking at every face.
-double truth(const PatternProblem& problem, Objective objective, double energy) {
+/// An orbit to stay near, which need not be admissible: beta with entries of all sizes and signs.
+Eigen::VectorXd target(const PatternProblem& problem, double energy) {
+    const double size = std::sqrt(energy / problem.set.reduction.energy_factor);
+    return Eigen::VectorXd::NullaryExpr(problem.kernel.dimension(), [&](Eigen::Index j) {
+        return size * std::sin(17 * energy + 2.3 * static_cast<double>(j)) * std::cos(5 * energy);
+    });
+}
+
+/// The best orbit at an energy and its proof.
+nsma::OptimumProof certify(const PatternProblem& problem, Objective objective, double energy) {
+    nsma::OrbitRequest request;
+    request.objective = objective;
+    request.level = energy;
+    const auto& kernel = problem.kernel;
+    if (objective == Objective::nearest) {
+        request.reference.resize(2 * kernel.pattern.cells);
+        for (int n = 0; n < request.reference.size(); ++n)
+            request.reference[n] = kernel.wave(target(problem, energy), n);
+    }
+    const double gap = problem.set.reduction.gap_sign;
+    return nsma::certified_optimum(problem, nsma::OrbitSolver().solve({.gap = gap}, problem, request));
+}
+
+/// The least value at an energy, of `nearest` the distance from `near`, by looking at every face.
+double truth(const PatternProblem& problem, Objective objective, double energy, const Eigen::VectorXd& near) {
     const auto& set = problem.set;
     const double q = energy / set.reduction.energy_factor;
     const double s = set.reduction.gap_sign == 0 ? 0.0 : 1.0 / std::abs(set.reduction.contact_row[0]);
     const int m = problem.kernel.dimension();
     if (objective == Objective::least_force)
         return 2.0 * problem.kernel.pattern.cells * (s == 0 ? std::sqrt(q / m) : reference::least_peak(m, s, q));
-    return reference::least(shock_matrix(problem), Eigen::VectorXd::Zero(m), s, q).value;
+    if (objective == Objective::least_shock)
+        return reference::least(shock_matrix(problem), Eigen::VectorXd::Zero(m), s, q).value;
+    const Eigen::VectorXd t = set.reduction.flip * near;
+    const double product = reference::least(Eigen::MatrixXd::Zero(m, m), -0.5 * t, s, q).value;
+    return set.reduction.energy_factor * (q + t.squaredNorm() + 2 * product);
+}
+
+/// What its values are compared in.
+double scale_of(Objective objective, double value, double energy) {
+    return objective == Objective::nearest ? energy : value;
 }
 
 std::vector<double> levels_of(const PatternProblem& problem) {
@@ -74,7 +106,7 @@ void for_each_program(int largest, Visit visit) {
         for (const int gap_sign : {-1, 0, 1}) {
             const PatternProblem problem = nsma::pattern_problem(pattern, gap_sign);
             if (problem.kind != nsma::PatternKind::contact) continue;
-            for (const Objective objective : {Objective::least_shock, Objective::least_force}) {
+            for (const Objective objective : {Objective::least_shock, Objective::least_force, Objective::nearest}) {
                 for (const double level : levels_of(problem)) {
                     SCOPED_TRACE(testing::Message()
                                  << pattern.cells << " (" << pattern.free_steps << ", " << pattern.contact_steps
@@ -89,16 +121,17 @@ void for_each_program(int largest, Visit visit) {
 TEST(CertifiedOptimum, IsTheBestOfEveryFace) {
     int programs = 0;
     for_each_program(10, [&](const PatternProblem& problem, Objective objective, double level) {
-        const auto proof = nsma::certified_optimum(problem, objective, nsma::decimal(level));
+        const auto proof = certify(problem, objective, level);
         ASSERT_TRUE(proof.certificate) << proof.unproved;
         EXPECT_EQ(nsma::check(*proof.certificate).reason, "");
         EXPECT_LT(proof.gap, 1e-6);
         const Optimum& optimum = *proof.certificate->optimum;
-        const double best = truth(problem, objective, level);
+        const double best = truth(problem, objective, level, target(problem, level));
         // The reference finds its points to 1e-9; the orbit's energy errs by 1e-9, its value by a few times that.
-        EXPECT_LE(to_double(optimum.bound), best * (1 + 1e-9));
-        EXPECT_GE(to_double(optimum.bound), best * (1 - 1e-6));
-        EXPECT_NEAR(to_double(optimum.value) / best, 1.0, 1e-6);
+        const double scale = scale_of(objective, best, level);
+        EXPECT_LE(to_double(optimum.bound), best + 1e-9 * scale);
+        EXPECT_GE(to_double(optimum.bound), best - 1e-6 * scale);
+        EXPECT_NEAR(to_double(optimum.value), best, 1e-6 * scale);
         EXPECT_LT(to_double(optimum.energy_error), 1e-8);
         ++programs;
     });
@@ -113,7 +146,7 @@ TEST(CertifiedOptimum, OfManyColumnsHasTheValueOfTheClosedForm) {
             if (outside(problem.interval, level)) continue;
             for (const Objective objective : {Objective::least_shock, Objective::least_force}) {
                 SCOPED_TRACE(testing::Message() << m << ' ' << name(objective) << " at " << level);
-                const auto proof = nsma::certified_optimum(problem, objective, nsma::decimal(level));
+                const auto proof = certify(problem, objective, level);
                 ASSERT_TRUE(proof.certificate) << proof.unproved;
                 nsma::OrbitRequest request;
                 request.objective = objective;
@@ -129,7 +162,7 @@ TEST(CertifiedOptimum, OfManyColumnsHasTheValueOfTheClosedForm) {
 TEST(CertifiedOptimum, NoForgeryPasses) {
     long rejected = 0, harmless = 0;
     for_each_program(4, [&](const PatternProblem& problem, Objective objective, double level) {
-        const auto proof = nsma::certified_optimum(problem, objective, nsma::decimal(level));
+        const auto proof = certify(problem, objective, level);
         ASSERT_TRUE(proof.certificate);
         const auto attack = [&](auto change) {
             auto forged = *proof.certificate;
@@ -141,29 +174,37 @@ TEST(CertifiedOptimum, NoForgeryPasses) {
             ++harmless;
             const double energy = to_double(forged.optimum->energy);
             if (outside(problem.interval, energy)) return;  // of no orbit everything is true
-            const Objective said =
-                forged.optimum->objective == Optimum::Of::least_shock ? Objective::least_shock : Objective::least_force;
-            EXPECT_LE(to_double(forged.optimum->bound), truth(problem, said, energy) * (1 + 1e-9));
+            constexpr Objective objectives[] = {Objective::least_shock, Objective::least_force, Objective::nearest};
+            const Objective said = objectives[static_cast<std::size_t>(forged.optimum->objective)];
+            Eigen::VectorXd near = Eigen::VectorXd::Zero(problem.kernel.dimension());
+            for (const auto& [column, value] : forged.optimum->reference) near[column] = to_double(value);
+            const double best = truth(problem, said, energy, near);
+            EXPECT_LE(to_double(forged.optimum->bound), best + 1e-9 * scale_of(said, best, energy));
         };
         for (const Rational& factor : {Rational(1'000'001, 1'000'000), Rational(999'999, 1'000'000), Rational(2),
                                        Rational(1, 2), Rational(-1), Rational(0)}) {
-            for (Rational Optimum::*member :
-                 {&Optimum::energy, &Optimum::bound, &Optimum::value, &Optimum::energy_error, &Optimum::multiplier})
+            for (Rational Optimum::*member : {&Optimum::energy, &Optimum::bound, &Optimum::value,
+                                              &Optimum::energy_error, &Optimum::multiplier, &Optimum::level})
                 attack([&](Optimum& optimum) { optimum.*member *= factor; });
             // A bound that is moved with the multiplier or the window.
             attack([&](Optimum& optimum) { optimum.bound *= factor, optimum.multiplier *= factor; });
             attack([&](Optimum& optimum) { optimum.bound *= factor, ++optimum.window; });
             attack([&](Optimum& optimum) { optimum.bound *= factor, --optimum.window; });
         }
+        if (!proof.certificate->optimum->reference.empty()) {
+            attack([](Optimum& optimum) { optimum.reference.front().second *= -1; });
+            attack([](Optimum& optimum) { optimum.reference.pop_back(); });
+            attack([](Optimum& optimum) { optimum.level -= 1, optimum.multiplier += 1; });
+            attack([](Optimum& optimum) { optimum.level += optimum.multiplier; });
+            attack([](Optimum& optimum) { optimum.reference.front().first = 7; });
+        }
         for (const int window : {-1, 0, 1, 2, 3, 4, 5, 6, 7, 1 << 30})
             attack([&](Optimum& optimum) { optimum.window = window; });
         attack([](Optimum& optimum) { optimum.orbit.clear(); });
         attack([](Optimum& optimum) { optimum.orbit.front().second *= 2; });
         attack([](Optimum& optimum) { optimum.orbit.front().first = 7; });
-        attack([](Optimum& optimum) {
-            optimum.objective =
-                optimum.objective == Optimum::Of::least_shock ? Optimum::Of::least_force : Optimum::Of::least_shock;
-        });
+        for (const auto other : {Optimum::Of::least_shock, Optimum::Of::least_force, Optimum::Of::nearest})
+            attack([&](Optimum& optimum) { optimum.objective = other; });
     });
     EXPECT_GT(rejected, harmless);
     EXPECT_GT(harmless, 100);
@@ -174,9 +215,9 @@ TEST(CertifiedOptimum, WhateverWindowAndMultiplierProveIsTrue) {
     long proved = 0;
     for_each_program(8, [&](const PatternProblem& problem, Objective objective, double level) {
         if (objective != Objective::least_shock) return;
-        const auto proof = nsma::certified_optimum(problem, objective, nsma::decimal(level));
+        const auto proof = certify(problem, objective, level);
         ASSERT_TRUE(proof.certificate);
-        const double best = truth(problem, objective, level);
+        const double best = truth(problem, objective, level, target(problem, level));
         auto forged = *proof.certificate;
         for (int window = 1; window <= problem.kernel.dimension(); ++window) {
             const bool close = window >= 3 && problem.kernel.dimension() >= 5;
@@ -193,13 +234,30 @@ TEST(CertifiedOptimum, WhateverWindowAndMultiplierProveIsTrue) {
     EXPECT_GT(proved, 1000);
 }
 
+// At the least energy one orbit is left; an energy next to it leaves next to nothing, and the multipliers have no end.
+TEST(CertifiedOptimum, AtTheLeastEnergyIsTheOneOrbit) {
+    for (const Pattern& pattern : {Pattern{6, 16, 4}, Pattern{8, 24, 8}, Pattern{12, 60, 10}, Pattern{15, 36, 12}}) {
+        for (const int gap_sign : {-1, 1}) {
+            const PatternProblem problem = nsma::pattern_problem(pattern, gap_sign);
+            if (problem.kind != nsma::PatternKind::contact) continue;
+            for (const Objective objective : {Objective::least_shock, Objective::least_force, Objective::nearest}) {
+                for (const double above : {0.0, 1e-15, 1e-14, 1e-12, 1e-9}) {
+                    const double level = *problem.interval.least * (1 + above);
+                    const auto proof = certify(problem, objective, level);
+                    if (nsma::decimal(level) < *problem.proof.certificate.energy_least) continue;  // by rounding
+                    ASSERT_TRUE(proof.certificate) << proof.unproved;
+                    EXPECT_LT(proof.gap, 1e-6) << pattern.free_steps << ' ' << name(objective) << ' ' << above;
+                }
+            }
+        }
+    }
+}
+
 TEST(CertifiedOptimum, SaysWhatItCannotProve) {
     const PatternProblem contact = nsma::pattern_problem({6, 16, 4}, 1);
-    EXPECT_EQ(nsma::certified_optimum(contact, Objective::least_shock, 100).unproved,
-              "optimum: no orbit of this pattern has that energy");
-    EXPECT_EQ(nsma::certified_optimum(nsma::pattern_problem({6, 23, 1}, 1), Objective::least_shock, 12).unproved,
-              "optimum: expected a contact motion");
-    EXPECT_THROW((void)nsma::certified_optimum(contact, Objective::nearest, 12), std::invalid_argument);
+    EXPECT_EQ(certify(contact, Objective::least_shock, 100).unproved, "optimum: expected an orbit, got none");
+    const PatternProblem free = nsma::pattern_problem({6, 23, 1}, 1);
+    EXPECT_EQ(certify(free, Objective::least_force, 12).unproved, "optimum: expected a motion with contact");
 }
 
 }  // namespace

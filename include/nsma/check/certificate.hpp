@@ -9,11 +9,11 @@
 
 namespace nsma {
 
-/// That no orbit of a `contact` pattern at one energy has less than `bound` of an objective, and an orbit that nearly
-/// has it. Objectives as reported (nondimensional).
+/// That no orbit of a `contact` or `stuck` pattern at one energy has less than `bound` of an objective, and an orbit
+/// that nearly has it. Objectives as reported (nondimensional).
 struct Optimum {
-    /// The two objectives with a choice: the smoothest orbit, and the least of the largest contact forces.
-    enum class Of { least_shock, least_force };
+    /// The smoothest orbit, the least of the largest contact forces, or the orbit nearest to `reference`.
+    enum class Of { least_shock, least_force, nearest };
     Of objective = Of::least_shock;  ///< what is least
     Rational energy;                 ///< E/E_unit asked
     Rational bound;                  ///< no orbit at that energy has less
@@ -21,8 +21,13 @@ struct Optimum {
     Rational value;                  ///< of the orbit, at most
     Rational energy_error;           ///< |E(orbit) - energy|/energy, at most
     int window = 0;                  ///< least shock: columns in a row that a best orbit covers
-    Rational multiplier;             ///< least shock: of the energy, see data/optima.md
+    Rational multiplier;             ///< least shock, nearest: of the energy, see data/optima.md
+    Rational level;                  ///< nearest: of COND2
+    RationalVector reference;        ///< nearest: beta of the orbit to stay near
 };
+
+/// (value - bound)/value, of `nearest` over the energy: how far the orbit may be from the best.
+[[nodiscard]] double relative_gap(const Optimum& optimum);
 
 /// Everything needed to believe the verdict on one pattern, as exact numbers. The four integers
 /// (N, r, p, sign d) and this are enough: see check().
