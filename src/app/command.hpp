@@ -27,6 +27,7 @@ struct Arguments {
     ScanMethod method = ScanMethod::certified;
     bool all_kinds = false;  ///< also free and stuck patterns
     bool distinct = false;   ///< one row a motion
+    bool certify = false;    ///< exact certificates of every orbit
     bool resume = false;     ///< go on with what an interrupted run left
     bool quick = false;
     bool curves = false;  ///< the curves of every orbit as well

@@ -217,6 +217,9 @@ std::vector<Entry> commands() {
     const Option all_kinds =
         flag("--all-kinds", &Arguments::all_kinds,
              "also solve patterns whose orbits never press against the wall (free) or never leave it (stuck)");
+    const Option certify =
+        flag("--certify", &Arguments::certify,
+             "certify in exact arithmetic how good every orbit is: certificates.jsonl, for nsma check");
     const Option distinct = flag("--distinct", &Arguments::distinct,
                                  "leave out of levels.csv and orbits.jsonl what a row above has under another label");
     const Option quiet = flag("--quiet", &Arguments::quiet, "no progress on stderr");
@@ -250,7 +253,7 @@ std::vector<Entry> commands() {
          run_orbit},
         {"sweep",
          "every pattern of the scene at every energy level: table, orbits, charts",
-         {scene, bar_and_mesh, out_folder, solver, all_kinds, distinct, resume, quiet},
+         {scene, bar_and_mesh, out_folder, solver, all_kinds, certify, distinct, resume, quiet},
          "Examples:\n"
          "  nsma sweep problems/first-mode.toml --out out/first-mode\n"
          "  nsma sweep problems/first-mode.toml --out out/first-mode --resume",

@@ -15,6 +15,7 @@
 #include "study/sweep/sweep_queue.hpp"
 #include "study/sweep/work_messages.hpp"
 #include "report/bar_text.hpp"
+#include "report/certificate_file.hpp"
 #include "report/folder_lock.hpp"
 #include "report/sweep/sweep_charts.hpp"
 #include "report/sweep/sweep_export.hpp"
@@ -25,11 +26,15 @@ namespace nsma::app {
 namespace {
 
 // What decides an answer besides scene and software.
-std::string options_text(const OrbitSolverOptions& options, bool all_kinds) {
+std::string options_text(const OrbitSolverOptions& options, bool all_kinds, bool certify) {
     const auto* solver = std::find_if(solver_choices.begin(), solver_choices.end(),
                                       [&](const auto& choice) { return choice.second == options.solvers; });
-    return fmt::format("solver {}, starts {}, tolerance {}, kinds {}", solver->first, options.starts,
-                       options.solver.tolerance, all_kinds ? "all" : "contact");
+    return fmt::format("solver {}, starts {}, tolerance {}, kinds {}{}", solver->first, options.starts,
+                       options.solver.tolerance, all_kinds ? "all" : "contact", certify ? ", certified" : "");
+}
+
+SweepWorker make_worker(const Scene& scene, const Arguments& arguments) {
+    return {scene, arguments.solver, arguments.certify ? certificate_json : SweepWorker::CertificateText()};
 }
 
 // A process that only computes. Of a scene that nobody can read the process that leads tells.
@@ -44,7 +49,7 @@ int help(Crew& crew, const Arguments& arguments) {
     std::optional<SweepWorker> worker;
     while (const auto units = crew.next()) {
         if (!scene) throw InputError(refusal);
-        if (!worker) worker.emplace(*scene, arguments.solver);
+        if (!worker) worker.emplace(make_worker(*scene, arguments));
         try {
             crew.report(packed(worker->run(unpacked_units(*units))));
         } catch (const Interrupted&) {
@@ -107,7 +112,7 @@ void solve(const Arguments& arguments, Crew& crew, const Scene& scene, SweepStor
     };
     if (crew.workers() > 0) share(crew, scene, queue, keep);
     // Alone, or with everyone else gone.
-    SweepWorker worker(scene, arguments.solver);
+    SweepWorker worker = make_worker(scene, arguments);
     try {
         while (!queue.finished()) {
             stop_point();
@@ -143,7 +148,8 @@ int run_sweep(const Arguments& arguments) {
             part.string() +
             ": is an interrupted sweep: expected --resume to go on with it or --fresh to begin anew, got none");
     }
-    SweepStore store(arguments.out, scene, {version(), options_text(arguments.solver, scene.all_kinds)},
+    SweepStore store(arguments.out, scene,
+                     {version(), options_text(arguments.solver, scene.all_kinds, arguments.certify)},
                      arguments.resume ? SweepStore::Mode::resume : SweepStore::Mode::fresh);
     solve(arguments, crew, scene, store);
     const auto [summary, line, span, spent] = export_sweep(store, arguments.out, arguments.distinct);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "nsma/orbit/physical_values.hpp"
 
 namespace nsma {
@@ -15,6 +17,17 @@ void add_energy(NamedValues& values, const Bar& bar, const char* ratio, const ch
                 const std::optional<double>& energy) {
     values[ratio] = bar.gap_sign() != 0 ? value_of(energy) : FieldValue();
     values[joule] = energy ? FieldValue(*energy * bar.energy_unit()) : FieldValue();
+}
+
+// How good the kept orbit is known to be, in words.
+FieldValue proof_value(const OrbitAnswer& answer) {
+    if (!answer.orbit) return {};
+    if (proved_exactly(answer)) return "proved exactly";
+    if (proved_best(answer)) return "proved in floating point";
+    const bool bounded = answer.optimality && answer.optimality->lower_bound;
+    if (!bounded && !answer.exact_proof) return "no bound";
+    const double gap = bounded ? answer.optimality->gap : answer.exact_proof->gap;
+    return fmt::format("gap {:.2g} %", 100 * gap);
 }
 
 void add_run(NamedValues& values, const char* status, const char* objective, const SolverRun* run) {
@@ -56,6 +69,7 @@ NamedValues named_values(const Bar& bar, const OrbitAnswer& answer) {
         values["tip_min_m"] = physical.tip_least;
     }
     values["global"] = values["optimum_global"];
+    values["proof"] = proof_value(answer);
     if (!answer.optimality || !answer.optimality->lower_bound) values["objective_gap"] = {};
     add_run(values, "ipopt_status", "ipopt_objective", best_run(answer, "ipopt"));
     add_run(values, "nlopt_status", "nlopt_objective", best_run(answer, "nlopt"));

@@ -288,6 +288,10 @@ OrbitAnswer OrbitSolver::solve(const Bar& bar, const PatternProblem& problem, co
     return answer;
 }
 
+bool proved_exactly(const OrbitAnswer& answer) {
+    return answer.exact_proof && answer.exact_proof->gap <= agreement_tolerance;
+}
+
 bool ipopt_is_usual(const OrbitSolverOptions& options) {
     return options.solvers == SolverChoice::ipopt || options.solvers == SolverChoice::both;
 }

@@ -225,7 +225,11 @@ TEST_F(Surroundings, AForgedCertificateKeepsNobodyBusy) {
         {head + R"(1000,"free_steps":2400,"contact_steps":800,"gap_sign":1,"claim":"nonempty","kind":"contact",)" +
              R"("energy_least":"25","optimum":{"objective":"least-shock","energy":"26","bound":"1","value":"9","energy_error":"1",)" +
              R"("orbit":[[0,"-1"]],"window":400,"multiplier":"1/)" + digits.substr(0, 200) + "\"}}",
-         "expected a multiplier of at most 80 bits"},
+         "expected multipliers of at most 80 bits"},
+        {head + R"(10000,"free_steps":24000,"contact_steps":8000,"gap_sign":1,"claim":"nonempty","kind":"contact",)" +
+             R"("energy_least":"25","optimum":{"objective":"least-shock","energy":"26","bound":"1","value":"9","energy_error":"1",)" +
+             R"("orbit":[[0,"-1"]],"window":4000,"multiplier":"-1/1208925819614629174706175"}})",
+         "rejected: "},
         {head + std::string(80'000, '[') + std::string(80'000, ']') + "}", "expected brackets at most 16 deep"},
         {head + std::string(80'000, '['), "expected brackets at most 16 deep"},
         {head + R"(6,"free_steps":16,"contact_steps":4,"gap_sign":1,"claim":"empty",)" + "\"" + std::string(5000, 'k') +

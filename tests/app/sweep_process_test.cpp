@@ -32,7 +32,8 @@ protected:
     static Words sweep(const std::string& scene, const fs::path& out, bool resume = false,
                        const std::string& solver = "proof") {
         // Free patterns too, which take solvers some time.
-        return with({NSMA_PROGRAM, "sweep", scene, "--out", out.string(), "--quiet", "--all-kinds", "--solver", solver},
+        return with({NSMA_PROGRAM, "sweep", scene, "--out", out.string(), "--quiet", "--certify", "--all-kinds",
+                     "--solver", solver},
                     resume ? Words{"--resume"} : Words{});
     }
     /// Sanitized ranks do not look for leaks: OpenMPI leaks in components that are unloaded before the report, so that
@@ -50,14 +51,16 @@ protected:
     }
 
     static void expect_same(const fs::path& a, const fs::path& b) {
-        for (const char* name : {"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl"}) {
+        for (const char* name : {"scene.toml", "patterns.csv", "levels.csv", "orbits.jsonl", "certificates.jsonl"}) {
             EXPECT_EQ(contents(a / name), contents(b / name)) << name;
             EXPECT_FALSE(contents(a / name).empty()) << name;
         }
         auto first = nlohmann::json::parse(contents(a / "summary.json"));
         auto second = nlohmann::json::parse(contents(b / "summary.json"));
-        first.erase("seconds");
-        second.erase("seconds");
+        for (const char* time : {"seconds", "check_seconds"}) {
+            first.erase(time);
+            second.erase(time);
+        }
         EXPECT_EQ(first, second);
     }
 

@@ -125,6 +125,55 @@ TEST_F(Program, FreeAndStuckPatternsAreLeftUnlessAskedFor) {
     EXPECT_NE(one.out.find("\nkind          free: "), std::string::npos) << one.out;
 }
 
+// With --certify every orbit has a certificate, which is checked from its line alone.
+TEST_F(Program, SweepCertifiesEveryOrbit) {
+    for (const std::string objective : {"least-shock", "least-force", "nearest"}) {
+        SCOPED_TRACE(objective);
+        const std::string scene =
+            write(objective + ".toml", scene_text("1.0", "6", "period = [0.0, 4.0]", "[1.6, 3.0, 12.0]", objective));
+        const fs::path out = folder_ / objective;
+        EXPECT_EQ(run({"sweep", scene, "--out", out.string(), "--quiet", "--certify"}).exit_code, 0);
+        const json summary = json::parse(contents(out / "summary.json"));
+        EXPECT_GT(summary["solved"], 5);
+        EXPECT_EQ(summary["proved_exactly"], summary["solved"]);
+        EXPECT_EQ(summary["certificate_bytes"], fs::file_size(out / "certificates.jsonl"));
+        std::size_t orbits = 0;
+        for (const auto& line : lines_of(contents(out / "orbits.jsonl"))) {
+            EXPECT_EQ(json::parse(line)["proof"], "proved exactly");
+            ++orbits;
+        }
+        EXPECT_EQ(summary["certificates"], orbits);
+        const Result checked = run({"check", path(objective + "/certificates.jsonl")});
+        EXPECT_EQ(checked.exit_code, 0);
+        EXPECT_EQ(checked.out.find(std::to_string(orbits) + " certificates valid, 0 rejected\n" +
+                                   std::to_string(summary["solved"].get<int>()) + " best orbits among them"),
+                  0U)
+            << checked.out;
+        // The table is made again from the store, and is gone with a sweep that asks for none.
+        const std::string lines = contents(out / "certificates.jsonl");
+        EXPECT_EQ(run({"export", out.string()}).exit_code, 0);
+        EXPECT_EQ(contents(out / "certificates.jsonl"), lines);
+        expect_refused({"sweep", scene, "--out", out.string(), "--quiet", "--resume"}, "certified");
+        EXPECT_EQ(run({"sweep", scene, "--out", out.string(), "--quiet"}).exit_code, 0);
+        EXPECT_FALSE(fs::exists(out / "certificates.jsonl"));
+        EXPECT_NE(contents(out / "levels.csv").find(",proved in floating point\n"), std::string::npos);
+        EXPECT_EQ(contents(out / "levels.csv").find("exactly"), std::string::npos);
+    }
+}
+
+// What is not proved is said in words: of free patterns with less than the whole search.
+TEST_F(Program, SweepSaysHowGoodEachOrbitIs) {
+    const std::string scene = write("eight.toml", scene_text("1.0", "8", "period = [2.0, 4.0]", "[1.6, 3.0]"));
+    (void)run({"sweep", scene, "--out", path("out"), "--quiet", "--certify", "--all-kinds", "--solver", "nlopt"});
+    int exact = 0, gaps = 0;
+    for (const auto& line : lines_of(contents(folder_ / "out" / "levels.csv"))) {
+        exact += line.ends_with(",proved exactly") ? 1 : 0;
+        gaps += line.ends_with(" %") || line.ends_with(",no bound") ? 1 : 0;
+    }
+    EXPECT_GT(exact, 0);
+    EXPECT_GT(gaps, 0) << contents(folder_ / "out" / "levels.csv");
+}
+
 TEST_F(Program, SweepWhereNothingIsAdmissibleIsThree) {
     const std::string scene = write("above.toml", scene_text("1.0", "6", "list = [[16, 4]]", "[1e6]"));
     const Result result = run({"sweep", scene, "--out", path("out"), "--quiet"});

@@ -61,6 +61,7 @@ TEST(OrbitJson, HasEveryAgreedField) {
                             "reason",
                             "method",
                             "level",
+                            "proof",
                             "classification",
                             "verdict_proved",
                             "energy_min_exact",
@@ -72,7 +73,7 @@ TEST(OrbitJson, HasEveryAgreedField) {
                             "same_motion_as"}) {
         EXPECT_TRUE(json.contains(key)) << key;
     }
-    EXPECT_EQ(json.size(), 36U);
+    EXPECT_EQ(json.size(), 37U);
     EXPECT_THAT(keys(json["objective"]), testing::ElementsAre("name", "value"));
     EXPECT_THAT(keys(json["violations"]), testing::ElementsAre("periodicity", "cond1", "cond2", "cond3", "energy"));
     EXPECT_THAT(keys(json["solvers"][0]), testing::UnorderedElementsAre("name", "start", "status", "objective",
@@ -106,7 +107,7 @@ TEST(OrbitJson, AnswersWithoutAnOrbitKeepTheFields) {
     answer.level = 1.0;
     answer.reason = "level 1 < 25";
     const Json json = Json::parse(orbit_json(answer, Bar{}));
-    EXPECT_EQ(json.size(), 36U);
+    EXPECT_EQ(json.size(), 37U);
     EXPECT_EQ(json["verdict"], "below");
     EXPECT_TRUE(json["energy_ratio"].is_null());
     EXPECT_TRUE(json["violations"]["periodicity"].is_null());

@@ -61,6 +61,13 @@ struct Optimality {
     double kkt_residual = 0;  ///< relative, from our own multipliers; 0 for closed forms
 };
 
+/// An exact certificate of an orbit that was asked for: how far it may be from the best.
+struct ExactProof {
+    double gap = 0;            ///< relative_gap() that the certificate proves
+    double check_seconds = 0;  ///< wall time of check()
+    std::string certificate;   ///< one line, as `nsma check` reads it
+};
+
 /// The answer for one pattern, one objective and, unless the least-energy orbit is asked, one
 /// energy level.
 struct OrbitAnswer {
@@ -73,6 +80,7 @@ struct OrbitAnswer {
     EnergyInterval interval;                       ///< energies of the pattern, in energy units
     bool verdict_proved = false;                   ///< by an exact certificate, or by the replayed orbit
     std::optional<Optimality> optimality;          ///< of the kept orbit
+    std::optional<ExactProof> exact_proof;         ///< of the kept orbit, where it was asked for and found
     std::optional<double> level;                   ///< the level asked, in energy units
     Objective objective = Objective::least_shock;  ///< the one asked
     std::optional<double> objective_value;         ///< nondimensional, of the kept orbit
@@ -92,5 +100,7 @@ struct OrbitAnswer {
 [[nodiscard]] inline bool proved_best(const OrbitAnswer& answer) {
     return answer.optimality && answer.optimality->global;
 }
+/// Whether that was proved without floating point.
+[[nodiscard]] bool proved_exactly(const OrbitAnswer& answer);
 
 }  // namespace nsma

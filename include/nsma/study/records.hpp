@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -40,14 +41,18 @@ struct SweepSummary {
     int above = 0;            ///< levels above the greatest energy
     int undecided = 0;        ///< levels between the greatest energy attained and its proved bound
     int global = 0;           ///< solved ones proved to be the best orbit at their level
-    double worst_gap = 0;     ///< largest relative gap to the proved bound among the other solved ones
-    int agreed = 0;           ///< usable answers of both solvers at one optimum
-    int disagreed = 0;        ///< usable answers of both solvers at different optima
-    int one_failed = 0;       ///< one of the two solvers failed; the other's answer was kept
-    int failed = 0;           ///< verdict `failed`, or both solvers failed
-    double worst_violation = 0;  ///< worst replayed relative violation of the kept orbits
-    double seconds = 0;          ///< wall time
-    bool interrupted = false;    ///< ended before its last pattern
+    int proved_exactly = 0;   ///< solved ones whose certificate proves it
+    int certificates = 0;     ///< of orbits, least-energy ones with them
+    std::int64_t certificate_bytes = 0;  ///< their size
+    double check_seconds = 0;            ///< wall time of checking them
+    double worst_gap = 0;                ///< largest relative gap to the proved bound among the other solved ones
+    int agreed = 0;                      ///< usable answers of both solvers at one optimum
+    int disagreed = 0;                   ///< usable answers of both solvers at different optima
+    int one_failed = 0;                  ///< one of the two solvers failed; the other's answer was kept
+    int failed = 0;                      ///< verdict `failed`, or both solvers failed
+    double worst_violation = 0;          ///< worst replayed relative violation of the kept orbits
+    double seconds = 0;                  ///< wall time
+    bool interrupted = false;            ///< ended before its last pattern
 };
 
 }  // namespace nsma

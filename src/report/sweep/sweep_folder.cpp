@@ -1,5 +1,7 @@
 #include "sweep_folder.hpp"
 
+#include <vector>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -33,6 +35,10 @@ std::string summary_json(const SweepSummary& summary) {
     json["unproved"] = summary.unproved;
     json["open_bounds"] = summary.open_bounds;
     json["global"] = summary.global;
+    json["proved_exactly"] = summary.proved_exactly;
+    json["certificates"] = summary.certificates;
+    json["certificate_bytes"] = summary.certificate_bytes;
+    json["check_seconds"] = summary.check_seconds;
     json["worst_gap"] = summary.worst_gap;
     json["agreed"] = summary.agreed;
     json["disagreed"] = summary.disagreed;
@@ -83,6 +89,10 @@ void SweepFolder::answer(const OrbitAnswer& answer, bool only_times) {
     if (!only_times) {
         levels_.write(levels_csv_row(bar_, answer) + "\n");
         if (answer.orbit) orbits_.write(orbit_json(answer, bar_, false, -1) + "\n");
+        if (answer.exact_proof) {
+            if (!certificates_) certificates_.emplace(folder_ / certificates_name);
+            certificates_->write(answer.exact_proof->certificate + "\n");
+        }
     }
     for (const std::string& row : timings_csv_rows(answer)) timings_.write(row + "\n");
 }
@@ -91,7 +101,14 @@ void SweepFolder::finish(const SweepSummary& summary) {
     PartFile text(folder_ / "summary.txt"), json(folder_ / "summary.json");
     text.write(summary_table(summary));
     json.write(summary_json(summary) + "\n");
-    const std::array files{&patterns_, &levels_, &orbits_, &timings_, &text, &json};
+    std::vector<PartFile*> files{&patterns_, &levels_, &orbits_, &timings_, &text, &json};
+    if (certificates_) {
+        files.push_back(&*certificates_);
+    } else {
+        std::error_code code;
+        fs::remove(folder_ / certificates_name, code);  // of other results
+        if (code) fail(folder_ / certificates_name, fmt::format("cannot be removed: {}", code.message()));
+    }
     for (PartFile* file : files) file->close();
     for (PartFile* file : files) file->put_in_place();
     write_csv_metadata(folder_, title_);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 
 #include "nsma/study/records.hpp"
 #include "nsma/study/scene.hpp"
@@ -14,9 +15,13 @@ namespace nsma {
 inline constexpr const char* store_name = "results.sqlite";
 inline constexpr const char* store_part_name = "results.sqlite.part";
 
+/// Certificates of the orbits of a sweep with --certify.
+inline constexpr const char* certificates_name = "certificates.jsonl";
+
 /// Files of a sweep in its folder, beside scene.toml; columns and units: data/README.md.
-inline constexpr std::array<const char*, 7> sweep_files{"patterns.csv", "levels.csv",   "orbits.jsonl",   "timings.csv",
-                                                        "summary.txt",  "summary.json", csv_metadata_name};
+inline constexpr std::array<const char*, 8> sweep_files{"patterns.csv",    "levels.csv",     "orbits.jsonl",
+                                                        "timings.csv",     "summary.txt",    "summary.json",
+                                                        certificates_name, csv_metadata_name};
 
 /// Makes the folder if missing and puts the scene in it. Throws InputError when that cannot be
 /// done or the folder holds another scene's results, std::invalid_argument unless scene.text is
@@ -41,6 +46,7 @@ private:
     Bar bar_;
     std::string title_;
     PartFile patterns_, levels_, orbits_, timings_;
+    std::optional<PartFile> certificates_;  // only where there are some
 };
 
 }  // namespace nsma

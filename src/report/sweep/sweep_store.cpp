@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raised with every change of the tables below, or of what a level's answer follows from.
-constexpr const char* format = "4";
+constexpr const char* format = "5";
 
 // What is made for a new store: names, and the statements that make them.
 std::vector<std::pair<std::string, std::string>> schema() {

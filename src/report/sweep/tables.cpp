@@ -26,7 +26,7 @@ constexpr const char* levels_columns =
     "ipopt_status,ipopt_objective,nlopt_status,nlopt_objective,"
     "verdict_proved,objective_bound,objective_gap,global,kkt_residual,kind,forceless,"
     "same_free_steps,same_contact_steps,same_shift_steps,same_reversed,"
-    "frequency_hz,peak_force_n,impact_speed_m_s,peak_stress_pa,tip_min_m";
+    "frequency_hz,peak_force_n,impact_speed_m_s,peak_stress_pa,tip_min_m,proof";
 
 std::string csv_field(std::monostate) { return {}; }
 std::string csv_field(bool value) { return value ? "true" : "false"; }
@@ -102,6 +102,8 @@ std::vector<std::string> timings_csv_rows(const OrbitAnswer& answer) {
         fmt::format("{},{},{}", answer.pattern.free_steps, answer.pattern.contact_steps, csv_number(answer.level));
     std::vector<std::string> rows{
         fmt::format("{},answer,,{},,{}", start, name(answer.verdict), csv_number(answer.seconds))};
+    if (const auto& proof = answer.exact_proof)
+        rows.push_back(fmt::format("{},check,,certified,,{}", start, csv_number(proof->check_seconds)));
     for (const SolverRun& run : answer.solvers) {
         rows.push_back(fmt::format("{},{},{},{},{},{}", start, csv_text(run.name), run.start, csv_text(run.status),
                                    run.iterations, csv_number(run.seconds)));
@@ -145,6 +147,7 @@ std::string summary_table(const SweepSummary& summary) {
     count("energy levels asked", summary.levels);
     count("  solved", summary.solved);
     count("    proved the best at their level", summary.global);
+    if (summary.certificates > 0) count("      of them exactly, by certificates", summary.proved_exactly);
     count("    not proved the best", summary.solved - summary.global);
     count("    a motion solved above once more", summary.copies);
     count("    closed form, or proved alone", summary.closed_form);
@@ -157,6 +160,11 @@ std::string summary_table(const SweepSummary& summary) {
     count("  failed", summary.failed);
     row("largest gap to the proved optimum", fmt::format("{:.2e}", summary.worst_gap));
     row("worst replayed violation", fmt::format("{:.2e}", summary.worst_violation));
+    if (summary.certificates > 0) {
+        count("certificates of orbits", summary.certificates);
+        row("  size [kB]", fmt::format("{:.1f}", 1e-3 * static_cast<double>(summary.certificate_bytes)));
+        row("  time to check them [s]", fmt::format("{:.3f}", summary.check_seconds));
+    }
     row("time [s]", fmt::format("{:.2f}", summary.seconds));
     return table;
 }

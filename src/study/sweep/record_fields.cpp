@@ -150,6 +150,7 @@ const std::vector<RecordField<OrbitAnswer>>& fields_of() {
     using V = Violations;
     using C = Classification;
     using L = MotionLabel;
+    using E = ExactProof;
     static const auto fields =
         pattern_fields<A>({member<A, &A::verdict_proved>("verdict_proved"),
                            member<A, &A::reason>("reason"),
@@ -164,6 +165,9 @@ const std::vector<RecordField<OrbitAnswer>>& fields_of() {
                            member<A, &A::optimality, &O::lower_bound>("objective_bound"),
                            member<A, &A::optimality, &O::gap>("objective_gap"),
                            member<A, &A::optimality, &O::kkt_residual>("kkt_residual"),
+                           member<A, &A::exact_proof, &E::gap>("certified_gap"),
+                           member<A, &A::exact_proof, &E::check_seconds>("check_seconds"),
+                           member<A, &A::exact_proof, &E::certificate>("certificate"),
                            member<A, &A::replay, &R::accepted>("replay_accepted"),
                            member<A, &A::replay, &R::same_labels>("replay_same_labels"),
                            member<A, &A::replay, &R::violations, &V::periodicity>("violation_periodicity"),

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
 #include "orbit/index.hpp"
+#include "nsma/search/certified_optimum.hpp"
 #include "nsma/study/scan.hpp"
 
 namespace nsma {
@@ -41,6 +43,11 @@ void count(SweepSummary& summary, const OrbitAnswer& answer, bool asked) {
     const bool solved = answer.verdict == Verdict::admissible;
     if (solved) {
         summary.worst_violation = std::max(summary.worst_violation, answer.replay->violations.worst());
+        if (const auto& proof = answer.exact_proof) {
+            ++summary.certificates;
+            summary.certificate_bytes += static_cast<std::int64_t>(proof->certificate.size()) + 1;
+            summary.check_seconds += proof->check_seconds;
+        }
     }
     if (answer.verdict == Verdict::failed) ++summary.failed;
     if (!asked) return;
@@ -49,6 +56,7 @@ void count(SweepSummary& summary, const OrbitAnswer& answer, bool asked) {
     if (answer.verdict == Verdict::undecided) ++summary.undecided;
     if (!solved) return;
     ++summary.solved;
+    if (proved_exactly(answer)) ++summary.proved_exactly;
     if (proved_best(answer)) {
         ++summary.global;
     } else {
@@ -65,8 +73,8 @@ void count(SweepSummary& summary, const OrbitAnswer& answer, bool asked) {
     }
 }
 
-SweepWorker::SweepWorker(const Scene& scene, const OrbitSolverOptions& options)
-    : scene_(scene), patterns_(patterns_of(scene)), solver_(options) {}
+SweepWorker::SweepWorker(const Scene& scene, const OrbitSolverOptions& options, CertificateText certificate_text)
+    : scene_(scene), patterns_(patterns_of(scene)), solver_(options), certificate_text_(std::move(certificate_text)) {}
 
 WorkResult SweepWorker::run(const WorkUnit& unit) {
     if (unit.pattern < 0 || index(unit.pattern) >= patterns_.size()) {
@@ -97,7 +105,11 @@ WorkResult SweepWorker::run(const WorkUnit& unit) {
             }
         }
     }
-    result.answer = solver_.solve(scene_.bar, problem_, request);
+    OrbitAnswer& answer = result.answer.emplace(solver_.solve(scene_.bar, problem_, request));
+    if (certificate_text_ && answer.orbit) {
+        if (const OptimumProof proof = certified_optimum(problem_, answer); proof.certificate)
+            answer.exact_proof = {proof.gap, proof.check_seconds, certificate_text_(*proof.certificate)};
+    }
     return result;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "nsma/search/orbit_solver.hpp"
@@ -32,7 +34,10 @@ struct WorkResult {
 /// result of a unit does not depend on the units done before.
 class SweepWorker {
 public:
-    SweepWorker(const Scene& scene, const OrbitSolverOptions& options);
+    /// How a certificate is written into one line.
+    using CertificateText = std::function<std::string(const Certificate&)>;
+    /// With a text every orbit is certified.
+    SweepWorker(const Scene& scene, const OrbitSolverOptions& options, CertificateText certificate_text = {});
     [[nodiscard]] WorkResult run(const WorkUnit& unit);
     /// Several in their order. A verdict brings with it the answers for levels outside the pattern's interval, which
     /// are known with it: up to 1024 in all.
@@ -42,6 +47,7 @@ private:
     const Scene& scene_;
     std::vector<Pattern> patterns_;
     OrbitSolver solver_;
+    CertificateText certificate_text_;
     long held_ = -1;
     PatternProblem problem_;
 };
