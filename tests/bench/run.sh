@@ -30,6 +30,7 @@ whole() {  # NAME COMMAND...: a row of whole.csv
 echo "run,wall_s,cpu_s,peak_mb" > "$out/whole.csv"
 for turn in 1 2 3; do
     whole "full spectrum" "$nsma" sweep "$scene" --quiet --out "$runs/contact"
+    whole "full spectrum certified" "$nsma" sweep "$scene" --certify --quiet --out "$runs/certified"
     whole "full spectrum by both solvers" "$nsma" sweep "$scene" --solver both --quiet --out "$runs/both"
     whole "all kinds by both solvers alone" "$nsma" sweep "$scene" --all-kinds --solver both --quiet --out "$runs/alone"
     whole "all kinds by both solvers on 2 ranks" mpirun -n 2 "$nsma" sweep "$scene" --all-kinds --solver both --quiet --out "$runs/two"
@@ -86,7 +87,7 @@ table() { awk -F, 'NR == 1 { gsub(/_/, " ") } { line = "|"; for (i = 1; i <= NF;
     echo "|---|---|---|---|"
     awk -F, '
         BEGIN {
-            split("sieve 2 scan_integers 2 scan_certified 3 mode_integers 2 mode_certified 2 kernel_exact 1 kernel_dense 3 march_queue 1 march_dense 3 serve 0 whole_orbit 1", words, " ")
+            split("sieve 2 scan_integers 2 scan_certified 3 mode_integers 2 mode_certified 2 kernel_exact 1 kernel_dense 3 march_queue 1 march_dense 3 serve 0 whole_orbit 1 certify_orbit 2 check_orbit 2", words, " ")
             for (i = 1; i in words; i += 2) expected[words[i]] = words[i + 1]
         }
         { gsub(/"/, "", $1) }
@@ -116,6 +117,8 @@ What is measured, and what to read in it:
 - `solve_ipopt`, `solve_nlopt` (SLSQP): one call from one start on the first-mode pattern (5m/2, 6m, 2m).
 - `whole_orbit`: the same patterns at 1.3 E_min, from the four integers to the replayed orbit, with the exact proof of the
   interval and the closed form of the optimum.
+- `certify_orbit`, `check_orbit`: making and checking the certificate that this orbit has the least shock. It covers all m
+  columns, over which the integers of the check grow to 44 m/2 bits.
 - `serve`: what rank 0 does for one answer: read, store and commit, choose and pack the next unit; a million levels a
   pattern. `serve_verdicts`: reading and storing all verdicts of N = 12 and 48 (`scale.csv` has
   the number of messages).

@@ -19,6 +19,7 @@
 #include "numerics/freed_memory.hpp"
 #include "numerics/solver.hpp"
 #include "set/level_points.hpp"
+#include "nsma/search/certified_optimum.hpp"
 #include "nsma/search/orbit_solver.hpp"
 #include "nsma/search/pattern_problem.hpp"
 #include "search/orbit_program.hpp"
@@ -160,6 +161,27 @@ void whole_orbit(benchmark::State& state) {
                   {"gap", answer.optimality ? answer.optimality->gap : 1.0}});
 }
 BENCHMARK(whole_orbit)->Arg(50)->Arg(100)->Arg(200)->Arg(400)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+// The certificate of that orbit of least shock: making it, and checking it.
+OrbitAnswer level_of(const PatternProblem& problem) {
+    return OrbitSolver().solve(Bar{}, problem, {.level = 1.3 * *problem.interval.least, .reference = {}});
+}
+void certify_orbit(benchmark::State& state) {
+    const PatternProblem problem = pattern_problem(accuracy_pattern(static_cast<int>(state.range(0)), 1), 1);
+    const OrbitAnswer answer = level_of(problem);
+    OptimumProof proof;
+    for (auto _ : state) proof = certified_optimum(problem, answer);
+    label(state, {{"gap", proof.certificate ? proof.gap : 1.0}});
+}
+void check_orbit(benchmark::State& state) {
+    const PatternProblem problem = pattern_problem(accuracy_pattern(static_cast<int>(state.range(0)), 1), 1);
+    const OptimumProof proof = certified_optimum(problem, level_of(problem));
+    bool valid = false;
+    for (auto _ : state) valid = check(proof.certificate.value()).valid;
+    label(state, {{"valid", valid}});
+}
+BENCHMARK(certify_orbit)->Arg(8)->Arg(64)->Arg(400)->Arg(2000)->Unit(benchmark::kMillisecond);
+BENCHMARK(check_orbit)->Arg(8)->Arg(64)->Arg(400)->Arg(2000)->Unit(benchmark::kMillisecond);
 
 // What rank 0 does for one answer: read the message, store it, choose the next unit, pack it. The number is N.
 void serve(benchmark::State& state) {
