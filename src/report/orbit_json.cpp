@@ -72,7 +72,8 @@ std::string orbit_json(const OrbitAnswer& answer, const Bar& bar, bool with_seco
     json["classification"] =
         kind ? object(values, "", {"minimal_period_steps", "silent_contact_steps", "wall_touches", "full_support"})
              : Json();
-    json.update(object(values, "", {"verdict_proved", "proof", "energy_min_exact", "energy_max_exact", "energy_bound"}));
+    json.update(
+        object(values, "", {"verdict_proved", "proof", "energy_min_exact", "energy_max_exact", "energy_bound"}));
     json["optimality"] = answer.optimality ? optimality_json(values) : Json();
     json["solvers"] = Json::array();
     for (const SolverRun& run : answer.solvers) json["solvers"].push_back(json_of(run, with_seconds));
