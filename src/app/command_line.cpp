@@ -264,6 +264,16 @@ std::vector<Entry> commands() {
           flag("--curves", &Arguments::curves, "also curves.csv: motion and force of every orbit, row by row")},
          "Example:\n  nsma export out/first-mode --curves",
          run_export},
+        {"report",
+         "write a folder's results as one page of HTML: click, zoom, play, share",
+         {folder,
+          [](CLI::App& command, Arguments& arguments) {
+              command.add_option("--out", arguments.out, "file to write instead of report.html in the folder");
+          }},
+         "Examples:\n"
+         "  nsma report out/first-mode\n"
+         "  nsma report out/first-mode --out first-mode.html",
+         run_report},
         {"accuracy",
          "speed against accuracy: every method on the same work, and where each fails",
          {scene, out_folder, flag("--quick", &Arguments::quick, "small sizes and few runs: seconds instead of minutes"),

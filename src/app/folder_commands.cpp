@@ -11,6 +11,7 @@
 #include "report/accuracy/accuracy_folder.hpp"
 #include "report/folder_lock.hpp"
 #include "report/orbit_folder.hpp"
+#include "report/page/report_page.hpp"
 #include "report/results_folder.hpp"
 #include "report/sensitivity/sensitivity_charts.hpp"
 #include "report/sensitivity/sensitivity_folder.hpp"
@@ -100,6 +101,16 @@ int run_export(const Arguments& arguments) {
         export_curves(store, folder, arguments.curves);
     }
     fmt::print("{}\n", line);
+    return exit_done;
+}
+
+int run_report(const Arguments& arguments) {
+    const fs::path folder = arguments.input;
+    expect_folder(folder, "the folder of a sweep or of an accuracy study");
+    const FolderLock lock(folder);
+    const fs::path file = arguments.out.empty() ? folder / report_name : fs::path(arguments.out);
+    write_whole(file, report_page(folder, version()));
+    fmt::print("report   {}\n", file.string());
     return exit_done;
 }
 

@@ -17,6 +17,7 @@
 #include "report/bar_text.hpp"
 #include "report/certificate_file.hpp"
 #include "report/folder_lock.hpp"
+#include "report/page/report_page.hpp"
 #include "report/sweep/sweep_charts.hpp"
 #include "report/sweep/sweep_export.hpp"
 #include "report/sweep/sweep_folder.hpp"
@@ -161,6 +162,9 @@ int run_sweep(const Arguments& arguments) {
         fmt::print("no level was solved: the orbits of these patterns have {}\n", energies_text(*span, scene.bar));
     if (summary.interrupted) return exit_interrupted;
     draw_if_possible(sweep_charts(read_sweep_folder(arguments.out)), arguments.out);
+    const std::filesystem::path report = std::filesystem::path(arguments.out) / report_name;
+    write_whole(report, report_page(arguments.out, version()));
+    fmt::print("report   {}\n", report.string());
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
     if (summary.left > 0 && summary.left == summary.admissible) {
         say("no pattern of the scene is a contact motion; --all-kinds solves the other {}", summary.left);

@@ -44,15 +44,6 @@ std::string steps_text(const std::vector<int>& steps) {
     return text;
 }
 
-const char* unit_name(Parameter parameter) {
-    switch (parameter) {
-        case Parameter::energy: return "J";
-        case Parameter::cond3_row:
-        case Parameter::adhesion: return "N";
-        default: return "m";
-    }
-}
-
 const char* kind_name(Slope::Kind kind) {
     switch (kind) {
         case Slope::Kind::two_sided: return "two-sided";
@@ -203,6 +194,15 @@ std::string summary_text(const SensitivitySummary& summary) {
 }
 
 }  // namespace
+
+const char* unit_name(Parameter parameter) {
+    switch (parameter) {
+        case Parameter::energy: return "J";
+        case Parameter::cond3_row:
+        case Parameter::adhesion: return "N";
+        default: return "m";
+    }
+}
 
 double in_si(double derivative, Objective objective, Parameter parameter, const Bar& bar) {
     const double unit = objective == Objective::least_force ? bar.force_unit() : bar.energy_unit();

@@ -35,6 +35,7 @@ void write_sensitivity(const std::filesystem::path& folder, const Scene& scene, 
                                            const SensitivityRecords& records);
 
 /// Derivative in SI: objective (J; N for least-force) per metre, newton or joule.
+[[nodiscard]] const char* unit_name(Parameter parameter);  ///< "m", "N" or "J"
 [[nodiscard]] double in_si(double derivative, Objective objective, Parameter parameter, const Bar& bar);
 /// Relative change of the value per relative change of gap or energy; of a parameter that is
 /// zero, per |d| or per Y S |d|/L.

@@ -1,39 +1,16 @@
 #include "sweep_export.hpp"
 
 #include <algorithm>
-#include <array>
-#include <set>
 
 #include <fmt/format.h>
 
+#include "seen_motions.hpp"
 #include "sweep_folder.hpp"
 #include "tables.hpp"
 
 namespace nsma {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-// The motions of the answers so far, by level.
-class SeenMotions {
-public:
-    // Whether an answer at this place came before with the same motion; if not, it is one from now on.
-    bool before(const OrbitAnswer& answer, int place) {
-        const auto motion = answer.orbit ? least_label(*answer.orbit) : std::nullopt;
-        if (!motion) return false;
-        bool known = false;
-        const auto numbers = fingerprints(*motion);
-        for (std::size_t grid = 0; grid < numbers.size(); ++grid)
-            known = !seen_.at(grid).emplace(place, numbers.at(grid)).second || known;
-        return known;
-    }
-
-private:
-    std::array<std::set<std::pair<int, std::uint64_t>>, 2> seen_;
-};
-
-}  // namespace
 
 std::string open_time_text(const TimeSpent& spent, int starts) {
     constexpr double worth_mentioning = 10;

@@ -1,0 +1,28 @@
+# cmake -D TO=FILE.cpp -D FROM=FOLDER -P embed.cmake: the parts of the page as text in a source. Modules become one script:
+# each is written after those that it imports, so that its imports and the word export go.
+cmake_minimum_required(VERSION 3.25)
+set(style page.css vendor/uplot/uPlot.min.css)
+set(licence vendor/uplot/LICENSE)
+set(vendor vendor/uplot/uPlot.iife.min.js)
+set(script units.js orbit.js plot.js diagram.js curves.js field.js animation.js details.js table.js download.js sweep.js
+           accuracy.js main.js)
+set(html page.html)
+
+set(source "#include \"report/page/page_parts.hpp\"\n\nnamespace nsma {\n")
+foreach(part html style licence vendor script)
+  string(APPEND source "\nconst std::vector<std::string_view> page_${part}{\n")
+  foreach(file IN LISTS ${part})
+    file(READ ${FROM}/${file} text)
+    if(part STREQUAL "script")
+      string(REGEX REPLACE "(^|\n)import [^\n]*" "\\1" text "${text}")
+      string(REGEX REPLACE "(^|\n)export " "\\1" text "${text}")
+      if(text MATCHES "(^|\n)(import|export)[ {]")
+        message(FATAL_ERROR "${file}: expected imports and exports of one line each")
+      endif()
+    endif()
+    string(APPEND source "R\"nsma_page(${text})nsma_page\",\n")
+  endforeach()
+  string(APPEND source "};\n")
+endforeach()
+string(APPEND source "\n}  // namespace nsma\n")
+file(WRITE ${TO} "${source}")
