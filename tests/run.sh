@@ -24,6 +24,7 @@ top=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 cd "$top"
 . problems/setup.sh
 packages="$packages python3-numpy"  # a program of problems/ reads results with it
+packages="$packages chromium"       # the report is opened in it
 case " $* " in *" clang "*) packages="$packages clang" ;; esac
 
 install_packages

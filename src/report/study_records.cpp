@@ -289,7 +289,7 @@ struct Writer {
 double not_finite(const std::string& word) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     if (word == "inf" || word == "-inf") return word == "inf" ? infinity : -infinity;
-    if (word != "nan") throw std::invalid_argument("number");
+    if (word != "nan" && word != "-nan") throw std::invalid_argument("number");
     return std::numeric_limits<double>::quiet_NaN();
 }
 

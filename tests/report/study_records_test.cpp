@@ -70,6 +70,7 @@ TEST_F(StudyRecordsTest, AnAccuracyStudyComesBackWithNumbersThatJsonHasNot) {
     program.worst_gap = std::numeric_limits<double>::infinity();
     program.error = std::numeric_limits<double>::quiet_NaN();
     results.programs = {program};
+    results.drifts = {{5, "FE", "", 10, -std::numeric_limits<double>::quiet_NaN(), 0.0, 0.1}};
     results.marches = {{5, "wave queue", "", true, 16, {1e-6, 1e-6, 1e-6}, 0.0, 1.0 / 3.0}};
     write_records(path, results);
     const AccuracyResults read = read_accuracy_records(path);
@@ -79,6 +80,7 @@ TEST_F(StudyRecordsTest, AnAccuracyStudyComesBackWithNumbersThatJsonHasNot) {
     EXPECT_EQ(read.programs[0].seconds.low, 0.1 + 0.2);
     EXPECT_EQ(read.programs[0].worst_gap, program.worst_gap);
     EXPECT_TRUE(std::isnan(read.programs[0].error));
+    EXPECT_TRUE(std::isnan(read.drifts.at(0).energy_drift));
     ASSERT_EQ(read.marches.size(), 1U);
     EXPECT_EQ(read.marches[0].contact_error, 1.0 / 3.0);
     EXPECT_TRUE(read.marches[0].decides_contact);

@@ -168,7 +168,7 @@ public:
             await(POLLOUT, end, "to be listened to");
             // Into a pipe whose reader has died this would be SIGPIPE, the end of the test: hence a socket.
             const auto count = ::send(socket_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
-            if (count < 0 && errno != EINTR && errno != EAGAIN) fail("ended before " + text);
+            if (count < 0 && errno != EINTR && errno != EAGAIN) fail("ended, awaited was to be listened to");
             if (count > 0) sent += static_cast<std::size_t>(count);
         }
     }
@@ -198,7 +198,7 @@ private:
     }
 
     [[noreturn]] void fail(const std::string& what) const {
-        throw std::runtime_error("chromium: " + what + "\n" + process::contents(log_).substr(0, 4000));
+        throw std::runtime_error("chromium: " + what.substr(0, 400) + "\n" + process::contents(log_).substr(0, 2000));
     }
 
     process::Folder folder_;
@@ -249,7 +249,7 @@ public:
     }
 
     /// Its value, or that of its promise. Doubles come back as they are (a -0 inside of something as 0), a bigint as
-    /// text, undefined as null.
+    /// text ("12n"), undefined as null.
     Json evaluate(const std::string& expression) {
         const Json answer =
             call("Runtime.evaluate", {{"expression", expression}, {"awaitPromise", true}, {"returnByValue", true}});
@@ -294,9 +294,8 @@ public:
             "(selector => { const element = document.querySelector(selector);"
             "if (!element || !element.getClientRects().length) return null;"
             "element.scrollIntoView({block: 'center', inline: 'center', behavior: 'instant'});"
-            "const box = element.getBoundingClientRect(), view = visualViewport;"
-            "return [(box.x + box.width / 2 - view.offsetLeft) * view.scale,"
-            "(box.y + box.height / 2 - view.offsetTop) * view.scale]; })(" +
+            "const box = element.getBoundingClientRect();"
+            "return [box.x + box.width / 2, box.y + box.height / 2]; })(" +
             Json(selector).dump() + ")");
         if (at.is_null()) throw std::runtime_error("the page shows no " + selector);
         click(at.at(0), at.at(1));
@@ -373,8 +372,9 @@ private:
     Json call_in(const std::string& session, const std::string& method, const Json& parameters = Json::object()) {
         const auto end = seconds_from_now(limit);
         const int id = post(session, method, parameters, end);
+        const std::string awaited = "the answer to " + method + " " + parameters.dump();
         while (true) {
-            const Json message = browser_.receive(end, "the answer to " + method + " " + parameters.dump());
+            const Json message = browser_.receive(end, awaited);
             take(message);
             if (message.value("id", 0) != id) continue;
             if (message.contains("error")) throw std::runtime_error(method + ": " + message.at("error").dump());

@@ -1,7 +1,7 @@
 /** The bar against the wall, its displacements drawn larger: played, paused, or put at a time. */
-import { themed } from "./curves.js";
-import { colourOf } from "./field.js";
-import { short, si } from "./units.js";
+import {themed} from "./curves.js";
+import {colourOf} from "./field.js";
+import {short, si} from "./units.js";
 
 const stations = 60;
 
@@ -54,7 +54,7 @@ export class Animation {
     const {motion} = this;
     const share = time / motion.period;
     this.output.textContent = `t = ${si(time * motion.step, "s", 4)} = ${short(share, 3)} T, ` +
-      `tip at ${si(motion.tipAt(time), "m", 4)}, force ${si(0 - motion.forceAt(time), "N", 4)}`;
+        `tip at ${si(motion.tipAt(time), "m", 4)}, force ${si(0 - motion.forceAt(time), "N", 4)}`;
     this.draw();
     this.moved(time);
   }
@@ -87,7 +87,7 @@ export class Animation {
       context.fillRect(from, top, Math.max(to - from, 0.5) + 0.5, bottom - top);
       from = to;
     }
-    context.strokeStyle = context.fillStyle = themed("--ink");
+    context.strokeStyle = "#333";  // on colours that no theme changes
     context.strokeRect(left, top, from - left, bottom - top);
     context.beginPath();
     for (let i = 1; i < stations; i += 6) {
@@ -96,10 +96,12 @@ export class Animation {
       context.lineTo(at, bottom);
     }
     context.stroke();
+    context.fillStyle = themed("--ink");
     context.font = "12px system-ui";
     context.fillText("held end", 6, top - 20);
     context.fillText("wall", wall + 6, top - 20);
-    context.fillText(`displacements × ${short(enlarge * motion.bar.length / (rest - left), 3)}; colour: stress`, left, bottom + 30);
+    context.fillText(
+        `displacements × ${short(enlarge * motion.bar.length / (rest - left), 3)}; colour: stress`, left, bottom + 30);
     // What a reader of the page, or a test of it, can ask for.
     canvas.dataset.time = String(this.time);
     canvas.dataset.tip = String(motion.displacement(motion.cells, this.time));

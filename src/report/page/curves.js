@@ -1,7 +1,7 @@
 /* global uPlot */
 /** Tip displacement and contact force over two periods, with one cursor. */
-import { element } from "./plot.js";
-import { scaled, short } from "./units.js";
+import {element} from "./plot.js";
+import {scaled, short} from "./units.js";
 
 export const periodsShown = 2;
 
@@ -41,7 +41,8 @@ export class Curves {
 
   plot(label, times, values, timeLabel, {wall, stepped}) {
     const ink = themed("--ink");
-    const axis = {stroke: ink, grid: {stroke: themed("--grid"), width: 1}, ticks: {stroke: themed("--grid")}, font: "12px system-ui"};
+    const axis =
+        {stroke: ink, grid: {stroke: themed("--grid"), width: 1}, ticks: {stroke: themed("--grid")}, font: "12px system-ui"};
     const options = {
       width: Math.max(this.host.clientWidth, 200),
       height: 170,
@@ -56,7 +57,9 @@ export class Curves {
       series: [
         {},
         {
-          label, stroke: themed("--accent"), width: 2,
+          label,
+          stroke: themed("--accent"),
+          width: 2,
           paths: stepped ? uPlot.paths.stepped({align: 1}) : uPlot.paths.linear(),
           points: {show: false},
           value: (_, value) => short(value, 6),

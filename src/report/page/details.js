@@ -1,6 +1,6 @@
 /** What is known of one orbit, in words and numbers. */
-import { element } from "./plot.js";
-import { ranges, short, si } from "./units.js";
+import {element} from "./plot.js";
+import {ranges, short, si} from "./units.js";
 
 function table(caption, head, rows) {
   const made = element("table", {}, element("caption", {}, caption));
@@ -39,23 +39,30 @@ function numbers(report, orbit) {
 
 function conditions(motion, orbit) {
   const left = motion.conditions();
-  const row = (name, text, steps, what) => [
-    name, text, steps.length > 0 ? `● binds: ${what} ${ranges(steps)}` : "○ does not bind",
-    short(orbit.get(`violation_${name.split(",")[0].toLowerCase()}`), 2),
+  const row = (name, text, steps, what) =>
+      [name,
+       text,
+       steps.length > 0 ? `● binds: ${what} ${ranges(steps)}` : "○ does not bind",
+       short(orbit.get(`violation_${name.split(",")[0].toLowerCase()}`), 2),
   ];
   return table("Conditions", ["condition", "what it leaves", "binding", "replayed violation"], [
-    row("COND1, no penetration in flight", motion.free > 1
-      ? `at least ${si(left.clearance, "m", 4)} from the wall, in step ${left.closest}` : "one step of flight",
-    left.touching, "touches in step"),
+    row("COND1, no penetration in flight",
+        motion.free > 1 ? `at least ${si(left.clearance, "m", 4)} from the wall, in step ${left.closest}` :
+                          "one step of flight",
+        left.touching, "touches in step"),
     row("COND2, contact at the wall", `x = ${si(motion.tip[motion.period], "m", 6)}`, [motion.free], "from step"),
-    row("COND3, no tension in contact", `presses with at least ${si(0 + left.weakest, "N", 4)}`, left.silent, "no force in step"),
+    row("COND3, no tension in contact", `presses with at least ${si(0 + left.weakest, "N", 4)}`, left.silent,
+        "no force in step"),
   ]);
 }
 
 function proof(report, orbit) {
   const {pattern} = orbit;
   const unit = report.bar.gap === 0 ? "J" : "E_g";
-  const end = (value, exact) => (exact ? `${exact} ${unit} exactly` : value === null ? "open" : `${short(value, 8)} ${unit}`);
+  const end = (value, exact) =>
+      (exact ? `${exact} ${unit} exactly` :
+           value === null ? "open" :
+                            `${short(value, 8)} ${unit}`);
   const gap = orbit.get("objective_gap");
   return table("Proof", [], [
     ["best orbit of its pattern here", orbit.proof || "–"],
@@ -69,8 +76,15 @@ function proof(report, orbit) {
 function solvers(orbit) {
   const runs = orbit.get("solvers");
   if (runs.length === 0) return table("Solvers", [], [["none", "known in closed form: no solver was asked"]]);
-  return table("Solvers", ["solver", "start", "status", "objective", "iterations"], runs.map((run) => [
-    run.name, run.start < 0 ? "level before" : String(run.start), run.status, short(run.objective, 8), String(run.iterations),
+  return table(
+      "Solvers", ["solver", "start", "status", "objective", "iterations"],
+      runs.map(
+          (run) =>
+              [run.name,
+               run.start < 0 ? "level before" : String(run.start),
+               run.status,
+               short(run.objective, 8),
+               String(run.iterations),
   ]));
 }
 
@@ -79,16 +93,20 @@ function prices(report, orbit) {
   if (!found) return [];
   if (found.refusal) return [table("Shadow prices", [], [["none", found.refusal]])];
   return [table(
-    `Shadow prices: change of ${found.objective} by unit of the condition`, ["condition", "binding", "price"],
-    found.prices.map(({name, unit, active, below, above}) => [
-      name, active ? "●" : "○",
-      above === below ? `${short(above, 5)} per ${unit}` : `${short(below, 5)} falling, ${short(above, 5)} rising, per ${unit}`,
-    ]),
-  )];
+      `Shadow prices: change of ${found.objective} by unit of the condition`,
+      ["condition", "binding", "price"],
+      found.prices.map(
+          ({name, unit, active, below, above}) =>
+              [name,
+               active ? "●" : "○",
+               above === below ? `${short(above, 5)} per ${unit}` :
+                                 `${short(below, 5)} falling, ${short(above, 5)} rising, per ${unit}`,
+  ]),
+      )];
 }
 
 /** Fills an element with all of it. */
 export function showDetails(host, report, orbit, motion) {
   host.replaceChildren(
-    numbers(report, orbit), conditions(motion, orbit), proof(report, orbit), ...prices(report, orbit), solvers(orbit));
+      numbers(report, orbit), conditions(motion, orbit), proof(report, orbit), ...prices(report, orbit), solvers(orbit));
 }

@@ -1,6 +1,7 @@
 /** The frequency-energy diagram of a sweep. */
-import { Plot, element, marks, shape } from "./plot.js";
-import { short, si } from "./units.js";
+import {element, marks, Plot, shape} from "./plot.js";
+
+import {short, si} from "./units.js";
 
 const mostModes = 30;
 const grazing = (n) => (n * Math.PI) ** 2 / 8;  // E/E_g at which the tip of linear mode n reaches the wall
@@ -10,7 +11,7 @@ const looks = [
   {name: "linear", title: "linear modes", line: true},
   {name: "modes", title: "exact modes k", line: true},
   {name: "intervals", title: "energy intervals", line: true},
-  {name: "absent", title: "level without orbit", mark: "circle", size: 1.5},
+  {name: "absent", title: "level without orbit", mark: "dot"},
   {name: "least", title: "least energy", mark: "diamond", size: 4.5},
   {name: "forceless", title: "without force (free patterns)", mark: "bar", size: 5},
   {name: "solved", title: "orbit, proved the best", mark: "circle", size: 5},
@@ -24,12 +25,17 @@ export class Diagram {
     const physical = !report.bar.without_units;
     this.units = {energy: physical, hertz: physical, log: true};
     this.collect();
-    this.plot = new Plot(host, {...this.options(), id: "diagram", name: "frequency-energy diagram; arrows move along the branch"});
+    this.plot =
+        new Plot(host, {...this.options(), id: "diagram", name: "frequency-energy diagram; arrows move along the branch"});
     for (const look of looks) {
       if (this.layers().find(({name}) => name === look.name).empty) continue;
-      const box = element("input", {type: "checkbox", checked: true, onchange: (event) => {
-        this.plot.toggle(look.name, event.target.checked);
-      }});
+      const box = element("input", {
+        type: "checkbox",
+        checked: true,
+        onchange: (event) => {
+          this.plot.toggle(look.name, event.target.checked);
+        }
+      });
       const swatch = shape("svg", {viewBox: "0 0 26 14", class: "swatch", "aria-hidden": "true"});
       const path = look.line ? "M1 7H25" : marks[look.mark](13, 7, look.size ?? 4);
       swatch.append(shape("path", {d: path, class: `layer ${look.name}`}));
@@ -62,8 +68,8 @@ export class Diagram {
   // Ends of the axes: every orbit, every start of an interval, every level; ends of intervals within a decade of them.
   collect() {
     const {patterns, orbits, levels} = this.report;
-    const energies = [...orbits.map(({energy}) => energy), ...patterns.map(({least}) => least), ...levels]
-      .filter((energy) => energy > 0);
+    const energies =
+        [...orbits.map(({energy}) => energy), ...patterns.map(({least}) => least), ...levels].filter((energy) => energy > 0);
     const ends = patterns.map(({greatest}) => greatest).filter((energy) => energy > 0);
     const most = (values, start) => values.reduce((a, b) => Math.max(a, b), start);
     const least = (values, start) => values.reduce((a, b) => Math.min(a, b), start);
@@ -107,7 +113,8 @@ export class Diagram {
   describe({orbit, pattern, level}) {
     const {bar} = this.report;
     const of = orbit?.pattern ?? pattern;
-    const name = `(r = ${of.free}, p = ${of.contact}), ω/ω₁ = ${short(of.ratio, 5)}, ${si(of.ratio * bar.first_frequency, "Hz")}`;
+    const name =
+        `(r = ${of.free}, p = ${of.contact}), ω/ω₁ = ${short(of.ratio, 5)}, ${si(of.ratio * bar.first_frequency, "Hz")}`;
     if (level !== undefined) return `${name}: no orbit at ${short(level, 6)}`;
     if (!orbit) return name;
     const ratio = bar.gap === 0 ? "" : `E/E_g = ${short(orbit.energy, 6)}, `;
@@ -116,10 +123,15 @@ export class Diagram {
 
   // Lines through points in the units shown.
   line(points) {
-    return (plot) => points.map((part) => part.map(([energy, frequency], i) => {
-      const x = plot.x(this.energy(energy));
-      return `${i === 0 ? "M" : "L"}${x.toFixed(1)} ${plot.y(this.frequency(frequency)).toFixed(1)}`;
-    }).join("")).join("");
+    return (plot) => points
+                         .map(
+                             (part) => part.map(([energy, frequency], i) => {
+                                             const x = plot.x(this.energy(energy));
+                                             return `${i === 0 ? "M" : "L"}${x.toFixed(1)} ${
+                                                 plot.y(this.frequency(frequency)).toFixed(1)}`;
+                                           })
+                                           .join(""))
+                         .join("");
   }
 
   modes() {
@@ -163,12 +175,13 @@ export class Diagram {
     const {patterns, orbits, missing} = this.report;
     const modes = this.modes();
     const linear = this.linear();
-    const intervals = patterns
-      .filter(({kind, least, greatest, unbounded}) => kind === "contact" && (unbounded || greatest > least))
-      .map((pattern) => [
-        [Math.max(pattern.least, this.energies[0]), pattern.ratio],
-        [pattern.unbounded ? this.energies[1] : Math.min(pattern.greatest, this.energies[1]), pattern.ratio],
-      ]);
+    const intervals =
+        patterns.filter(({kind, least, greatest, unbounded}) => kind === "contact" && (unbounded || greatest > least))
+            .map(
+                (pattern) => [
+                    [Math.max(pattern.least, this.energies[0]), pattern.ratio],
+                    [pattern.unbounded ? this.energies[1] : Math.min(pattern.greatest, this.energies[1]), pattern.ratio],
+    ]);
     const points = {absent: [], least: [], forceless: [], solved: [], unproved: []};
     for (const {pattern, level} of missing)
       points.absent.push({x: this.energy(level), y: this.frequency(pattern.ratio), pattern, level});
@@ -182,7 +195,8 @@ export class Diagram {
       intervals: {path: this.line(intervals), empty: intervals.length === 0},
     };
     return looks.map((look) => ({
-      ...look, ...(made[look.name] ?? {points: points[look.name], empty: points[look.name].length === 0}),
-    }));
+                       ...look,
+                       ...(made[look.name] ?? {points: points[look.name], empty: points[look.name].length === 0}),
+                     }));
   }
 }

@@ -1,5 +1,5 @@
 /** Files made in the page: tables, drawings, pictures. */
-import { element } from "./plot.js";
+import {element} from "./plot.js";
 
 function save(name, content, type) {
   const url = URL.createObjectURL(new Blob([content], {type}));
@@ -10,7 +10,8 @@ function save(name, content, type) {
 /** Motion and force of an orbit over one period, every number as it is. */
 export function motionCsv(motion) {
   const rows = ["t_s,x_m,force_n"];
-  for (let n = 0; n <= motion.period; ++n) rows.push(`${n * motion.step},${motion.tip[n]},${motion.force[n % motion.period]}`);
+  for (let n = 0; n <= motion.period; ++n)
+    rows.push(`${n * motion.step},${motion.tip[n]},${motion.force[n % motion.period]}`);
   return `${rows.join("\n")}\n`;
 }
 

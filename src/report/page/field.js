@@ -1,6 +1,6 @@
 /** Stress, velocity or displacement over bar and time, on a canvas: time to the right, the wall at the top. */
-import { periodsShown, themed } from "./curves.js";
-import { scaled, short } from "./units.js";
+import {periodsShown, themed} from "./curves.js";
+import {scaled, short} from "./units.js";
 
 const kinds = {
   stress: {title: "stress, tension > 0", unit: "Pa"},
@@ -10,8 +10,13 @@ const kinds = {
 
 // Negative blue, nothing white, positive orange; in grey only what is negative grows dark.
 const palette = [
-  [0, 8, 48, 107], [0.25, 63, 136, 197], [0.42, 198, 219, 239], [0.5, 255, 255, 255],
-  [0.58, 253, 230, 200], [0.75, 247, 178, 103], [1, 232, 137, 43],
+  [0, 8, 48, 107],
+  [0.25, 63, 136, 197],
+  [0.42, 198, 219, 239],
+  [0.5, 255, 255, 255],
+  [0.58, 253, 230, 200],
+  [0.75, 247, 178, 103],
+  [1, 232, 137, 43],
 ];
 
 /** The colour of a share in [-1, 1] of the greatest value. */
@@ -95,7 +100,7 @@ export class SpaceTime {
     const {title, unit} = kinds[this.kind];
     const shown = scaled(this.largest, unit);
     const limit = short(this.largest / shown.factor, 3);
-    context.fillText(`${title}; blue −${limit} to orange ${limit} ${shown.unit}; black: contact`, left, 14);
+    context.fillText(`${title}; blue −${limit} to orange ${limit} ${shown.unit}; bar above: contact`, left, 14);
     context.textAlign = "right";
     context.fillText("wall", left - 6, top + 10);
     context.fillText("held end", left - 6, top + height);
@@ -107,7 +112,8 @@ export class SpaceTime {
     context.textAlign = "center";
     for (let i = 0; i <= 4; ++i) {
       const text = short(i / 4 * periodsShown * motion.seconds / time.factor, 3);
-      context.fillText(i === 4 ? `${text} ${time.unit}` : text, left + Math.min(width * i / 4, width - 22), top + height + 16);
+      context.fillText(
+          i === 4 ? `${text} ${time.unit}` : text, left + Math.min(width * i / 4, width - 22), top + height + 16);
     }
   }
 
@@ -117,7 +123,8 @@ export class SpaceTime {
     const scale = devicePixelRatio;
     this.draw(scale);
     const context = this.canvas.getContext("2d");
-    const at = this.margin.left + this.width * (steps % (periodsShown * this.motion.period)) / (periodsShown * this.motion.period);
+    const at =
+        this.margin.left + this.width * (steps % (periodsShown * this.motion.period)) / (periodsShown * this.motion.period);
     context.beginPath();
     context.moveTo(at, this.margin.top);
     context.lineTo(at, this.margin.top + this.height);

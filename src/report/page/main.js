@@ -1,7 +1,7 @@
 /** Reads what the program wrote into the page and starts its parts. */
-import { AccuracyPage } from "./accuracy.js";
-import { element } from "./plot.js";
-import { SweepPage } from "./sweep.js";
+import {AccuracyPage} from "./accuracy.js";
+import {element} from "./plot.js";
+import {SweepPage} from "./sweep.js";
 
 const find = (selector) => document.querySelector(selector);
 const data = JSON.parse(find("#data").textContent);
@@ -14,10 +14,14 @@ find("#scene").textContent = data.scene;
 find("#summary").textContent = data.summary;
 
 const pages = [];
-if (data.sweep) pages.push(new SweepPage(data.sweep, find));
-else find("#sweep").remove();
-if (data.accuracy) pages.push(new AccuracyPage(data.accuracy, find("#accuracy")));
-else find("#accuracy").remove();
+if (data.sweep)
+  pages.push(new SweepPage(data.sweep, find));
+else
+  find("#sweep").remove();
+if (data.accuracy)
+  pages.push(new AccuracyPage(data.accuracy, find("#accuracy")));
+else
+  find("#accuracy").remove();
 
 find("#theme").addEventListener("click", () => {
   const root = document.documentElement;
@@ -29,8 +33,13 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   for (const page of pages) page.redraw();
 });
 if (data.sweep && data.accuracy) {
-  find("#title").after(element("nav", {}, element("a", {href: "#sweep"}, "orbits"), " ", element("a", {href: "#accuracy"}, "accuracy")));
+  find("#title").after(
+      element("nav", {}, element("a", {href: "#sweep"}, "orbits"), " ", element("a", {href: "#accuracy"}, "accuracy")));
 }
 
 /** For scripts on the page: what is shown. */
-window.nsma = {data, pages, sweep: pages.find((page) => page instanceof SweepPage)};
+window.nsma = {
+  data,
+  pages,
+  sweep: pages.find((page) => page instanceof SweepPage)
+};

@@ -25,13 +25,14 @@ export function shape(name, attributes = {}, text = "") {
 
 /** The path of a mark of some radius about a point. */
 export const marks = {
-  circle: (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`,
-  square: (x, y, r) => `M${x - r} ${y - r}h${2 * r}v${2 * r}h${-2 * r}z`,
-  diamond: (x, y, r) => `M${x} ${y - r}l${r} ${r}l${-r} ${r}l${-r} ${-r}z`,
-  triangle: (x, y, r) => `M${x} ${y - r}l${r} ${1.7 * r}h${-2 * r}z`,
-  down: (x, y, r) => `M${x} ${y + r}l${r} ${-1.7 * r}h${-2 * r}z`,
-  cross: (x, y, r) => `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`,
+  circle: (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${- 2 * r} 0`,
+  square: (x, y, r) => `M${x - r} ${y - r}h${2 * r}v${2 * r}h${- 2 * r}z`,
+  diamond: (x, y, r) => `M${x} ${y - r}l${r} ${r}l${- r} ${r}l${- r} ${- r}z`,
+  triangle: (x, y, r) => `M${x} ${y - r}l${r} ${1.7 * r}h${- 2 * r}z`,
+  down: (x, y, r) => `M${x} ${y + r}l${r} ${- 1.7 * r}h${- 2 * r}z`,
+  cross: (x, y, r) => `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${- 2 * r}l${- 2 * r} ${2 * r}`,
   plus: (x, y, r) => `M${x - r} ${y}h${2 * r}M${x} ${y - r}v${2 * r}`,
+  dot: (x, y) => `M${x} ${y}h0`,
   bar: (x, y, r) => `M${x} ${y - r}v${2 * r}`,
 };
 
@@ -92,8 +93,10 @@ export class Plot {
 
   /** Shows a layer or hides it. */
   toggle(name, shown) {
-    if (shown) this.hidden.delete(name);
-    else this.hidden.add(name);
+    if (shown)
+      this.hidden.delete(name);
+    else
+      this.hidden.add(name);
     this.draw();
   }
 
@@ -255,7 +258,7 @@ export class Plot {
       const [a, b] = [this.fractions(start), this.fractions(end)];
       const ends = {};
       for (const axis of ["x", "y"]) ends[axis] = [Math.min(a[axis], b[axis]), Math.max(a[axis], b[axis])];
-      for (const axis of ["x", "y"]) this.view[axis] = ends[axis].map((end) => this.valueAt(axis, end));
+      for (const axis of ["x", "y"]) this.view[axis] = ends[axis].map((fraction) => this.valueAt(axis, fraction));
       this.draw();
     });
     this.svg.addEventListener("click", (event) => {

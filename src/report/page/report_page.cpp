@@ -29,6 +29,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array pattern_fields{
     "free_steps",      "contact_steps",    "kernel_dimension", "verdict",          "kind",  "energy_least",
     "energy_greatest", "energy_unbounded", "energy_min_exact", "energy_max_exact", "proved"};
+constexpr std::size_t reason_field = 4;
 constexpr std::array answer_fields{"free_steps",
                                    "contact_steps",
                                    "level",
@@ -129,9 +130,14 @@ Json sweep_json(const SweepStore& store, const fs::path& folder, SweepSummary& s
         const bool copy = seen.before(answer, result.place);
         if (copy && result.place > 0) ++summary.copies;
         Json row = row_json(answer_fields, named_values(scene.bar, answer));
-        row.push_back(copy);
-        row.push_back(runs_json(answer));
-        row.push_back(answer.orbit ? value_json(answer.orbit->beta) : Json::array());
+        if (answer.orbit) {
+            row.push_back(copy);
+            row.push_back(runs_json(answer));
+            row.push_back(value_json(answer.orbit->beta));
+        } else {  // most rows of many sweeps: no more than they say
+            if (answer.verdict == Verdict::below || answer.verdict == Verdict::above) row[reason_field] = nullptr;
+            while (row.back().is_null()) row.erase(row.size() - 1);
+        }
         answers.push_back(std::move(row));
     });
     summary.seconds = store.seconds();

@@ -1,13 +1,13 @@
 /** The page of a sweep: diagram, one orbit, table. */
-import { Animation } from "./animation.js";
-import { Curves, themed } from "./curves.js";
-import { showDetails } from "./details.js";
-import { Diagram } from "./diagram.js";
-import { motionCsv, saveCsv, saveDrawing, savePng, saveSvg } from "./download.js";
-import { SpaceTime } from "./field.js";
-import { Motion } from "./orbit.js";
-import { Table } from "./table.js";
-import { short, si } from "./units.js";
+import {Animation} from "./animation.js";
+import {Curves, themed} from "./curves.js";
+import {showDetails} from "./details.js";
+import {Diagram} from "./diagram.js";
+import {motionCsv, saveCsv, saveDrawing, savePng, saveSvg} from "./download.js";
+import {SpaceTime} from "./field.js";
+import {Motion} from "./orbit.js";
+import {Table} from "./table.js";
+import {short, si} from "./units.js";
 
 /** What the program wrote, with patterns and orbits as objects. */
 export function reportOf(data) {
@@ -18,9 +18,17 @@ export function reportOf(data) {
   const patterns = data.patterns.map((row) => {
     const get = (name) => row[patternColumn.get(name)];
     const pattern = {
-      free: get("free_steps"), contact: get("contact_steps"), m: get("kernel_dimension"), verdict: get("verdict"),
-      kind: get("kind"), least: get("energy_least"), greatest: get("energy_greatest"), unbounded: get("energy_unbounded"),
-      leastExact: get("energy_min_exact"), greatestExact: get("energy_max_exact"), proved: get("proved"),
+      free: get("free_steps"),
+      contact: get("contact_steps"),
+      m: get("kernel_dimension"),
+      verdict: get("verdict"),
+      kind: get("kind"),
+      least: get("energy_least"),
+      greatest: get("energy_greatest"),
+      unbounded: get("energy_unbounded"),
+      leastExact: get("energy_min_exact"),
+      greatestExact: get("energy_max_exact"),
+      proved: get("proved"),
     };
     pattern.ratio = 4 * data.cells / (pattern.free + pattern.contact);
     patternAt.set(key(pattern.free, pattern.contact), pattern);
@@ -28,34 +36,67 @@ export function reportOf(data) {
   });
   const answerColumn = column(data.answer_fields);
   const rows = data.answers.map((row) => {
-    const get = (name) => row[answerColumn.get(name)];
-    const orbit = get("beta").length > 0;
+    const get = (name) => row[answerColumn.get(name)] ?? null;
+    const orbit = get("beta") !== null;
     return {
-      get, pattern: patternAt.get(key(get("free_steps"), get("contact_steps"))), level: get("level"), verdict: get("verdict"),
-      energy: get("energy"), proof: get("proof"), proved: get("global"), forceless: get("forceless"), orbit, copy: get("copy"),
+      get,
+      pattern: patternAt.get(key(get("free_steps"), get("contact_steps"))),
+      level: get("level"),
+      verdict: get("verdict"),
+      energy: get("energy"),
+      proof: get("proof"),
+      proved: get("global"),
+      forceless: get("forceless"),
+      orbit,
+      copy: get("copy"),
     };
   });
   const prices = data.prices.map((one) => ({...one, pattern: patternAt.get(key(one.free_steps, one.contact_steps))}));
   return {
-    ...data, patterns, rows, prices,
+    ...data,
+    patterns,
+    rows,
+    prices,
     orbits: rows.filter(({orbit}) => orbit),
-    missing: rows.filter(({orbit, level, verdict}) => !orbit && level !== null && (verdict === "below" || verdict === "above")),
+    missing:
+        rows.filter(({orbit, level, verdict}) => !orbit && level !== null && (verdict === "below" || verdict === "above")),
   };
 }
 
-const columnsOf = ({bar}) => [
-  {title: "r", value: ({pattern}) => pattern.free, text: ({pattern}) => String(pattern.free)},
-  {title: "p", value: ({pattern}) => pattern.contact, text: ({pattern}) => String(pattern.contact)},
-  {title: "ω/ω₁", value: ({pattern}) => pattern.ratio, text: ({pattern}) => short(pattern.ratio, 5)},
-  {title: "f", value: ({pattern}) => pattern.ratio, text: ({pattern}) => si(pattern.ratio * bar.first_frequency, "Hz", 5)},
-  {title: "m", value: ({pattern}) => pattern.m, text: ({pattern}) => String(pattern.m)},
-  {title: "level", value: ({level}) => level, text: ({level}) => (level === null ? "least energy" : short(level, 6))},
-  {title: "verdict", value: ({verdict}) => verdict, text: ({verdict}) => (verdict === "admissible" ? "orbit" : verdict)},
-  {title: "E", value: ({energy}) => energy, text: ({energy}) => (energy === null ? "" : si(energy * bar.energy_unit, "J", 5))},
-  {title: "peak force", value: ({get}) => get("peak_force_n"), text: ({get, orbit}) => (orbit ? si(get("peak_force_n"), "N", 4) : "")},
-  {title: "proof", value: ({proof}) => proof, text: ({proof}) => proof ?? ""},
-  {title: "kind", value: ({pattern}) => pattern.kind, text: ({pattern, forceless}) => `${pattern.kind}${forceless ? ", no force" : ""}`},
-  {title: "distinct", value: ({copy}) => copy, text: ({copy, orbit}) => (!orbit ? "" : copy ? "seen above" : "new")},
+const columnsOf = ({bar}) =>
+    [{title: "r", value: ({pattern}) => pattern.free, text: ({pattern}) => String(pattern.free)},
+     {title: "p", value: ({pattern}) => pattern.contact, text: ({pattern}) => String(pattern.contact)},
+     {title: "ω/ω₁", value: ({pattern}) => pattern.ratio, text: ({pattern}) => short(pattern.ratio, 5)},
+     {
+       title: "f",
+       value: ({pattern}) => pattern.ratio,
+       text: ({pattern}) => si(pattern.ratio * bar.first_frequency, "Hz", 5)
+     },
+     {title: "m", value: ({pattern}) => pattern.m, text: ({pattern}) => String(pattern.m)},
+     {title: "level", value: ({level}) => level, text: ({level}) => (level === null ? "least energy" : short(level, 6))},
+     {title: "verdict", value: ({verdict}) => verdict, text: ({verdict}) => (verdict === "admissible" ? "orbit" : verdict)},
+     {
+       title: "E",
+       value: ({energy}) => energy,
+       text: ({energy}) => (energy === null ? "" : si(energy * bar.energy_unit, "J", 5))
+     },
+     {
+       title: "peak force",
+       value: ({get}) => get("peak_force_n"),
+       text: ({get, orbit}) => (orbit ? si(get("peak_force_n"), "N", 4) : "")
+     },
+     {title: "proof", value: ({proof}) => proof, text: ({proof}) => proof ?? ""},
+     {
+       title: "kind",
+       value: ({pattern}) => pattern.kind,
+       text: ({pattern, forceless}) => `${pattern.kind}${forceless ? ", no force" : ""}`
+     },
+     {title: "distinct",
+      value: ({copy}) => copy,
+      text: ({copy, orbit}) =>
+          (!orbit   ? "" :
+               copy ? "seen above" :
+                      "new")},
 ];
 
 // An orbit worth looking at first: of the pattern with most amplitudes, at a middle energy.
@@ -75,9 +116,15 @@ export class SweepPage {
     this.diagram = new Diagram(find("#diagram"), find("#legend"), report, (orbit) => this.choose(orbit));
     this.curves = new Curves(find("#curves"), (time) => this.hover(time));
     this.field = new SpaceTime(find("#field"), (time) => this.hover(time));
-    this.animation = new Animation({
-      canvas: find("#bar"), play: find("#play"), slower: find("#speed"), slider: find("#time"), output: find("#moment"),
-    }, show);
+    this.animation = new Animation(
+        {
+          canvas: find("#bar"),
+          play: find("#play"),
+          slower: find("#speed"),
+          slider: find("#time"),
+          output: find("#moment"),
+        },
+        show);
     this.table = new Table(find("#levels"), columnsOf(report), report.rows, (row) => row.orbit && this.choose(row));
     this.table.counted = (shown, all) => {
       find("#count").textContent = shown === all ? `${all} rows` : `${shown} of ${all} rows`;
@@ -87,7 +134,9 @@ export class SweepPage {
     find("#filter").addEventListener("input", ({target}) => this.table.filter(target.value));
     find("#kind").addEventListener("change", ({target}) => this.field.choose(target.value));
     const units = {
-      "#joules": (on) => ({energy: on}), "#hertz": (on) => ({hertz: on}), "#linear": (on) => ({log: !on}),
+      "#joules": (on) => ({energy: on}),
+      "#hertz": (on) => ({hertz: on}),
+      "#linear": (on) => ({log: !on}),
     };
     find("#joules").checked = this.diagram.units.energy;
     find("#hertz").checked = this.diagram.units.hertz;
@@ -132,9 +181,10 @@ export class SweepPage {
     const level = said.has("E") ? Number(said.get("E")) : null;
     const of = this.report.orbits.filter(({pattern}) => pattern.free === free && pattern.contact === contact);
     const found = of.find((orbit) => orbit.level === level) ??
-      (level === null ? of[0] : of.find(({energy}) => Math.abs(energy / level - 1) < 1e-6));
+        (level === null ? of[0] : of.find(({energy}) => Math.abs(energy / level - 1) < 1e-6));
     if (!found) {
-      this.find("#message").textContent = `No orbit of (r = ${free}, p = ${contact})${level === null ? "" : ` at ${level}`} is in this report.`;
+      this.find("#message").textContent =
+          `No orbit of (r = ${free}, p = ${contact})${level === null ? "" : ` at ${level}`} is in this report.`;
       return false;
     }
     if (found !== this.orbit) this.choose(found);
@@ -148,7 +198,7 @@ export class SweepPage {
     this.motion = new Motion(report.bar, report.cells, pattern.free, pattern.contact, orbit.get("beta"));
     find("#message").textContent = "";
     find("#orbit-name").textContent = `Orbit (r = ${pattern.free}, p = ${pattern.contact}), ` +
-      `${si(pattern.ratio * report.bar.first_frequency, "Hz")}, ${si(orbit.energy * report.bar.energy_unit, "J")}`;
+        `${si(pattern.ratio * report.bar.first_frequency, "Hz")}, ${si(orbit.energy * report.bar.energy_unit, "J")}`;
     this.curves.show(this.motion);
     this.field.show(this.motion);
     this.animation.show(this.motion);
@@ -181,13 +231,15 @@ export class SweepPage {
     const {pattern, energy} = this.orbit;
     const sign = event.key === "ArrowRight" || event.key === "ArrowUp" ? 1 : -1;
     const along = event.key === "ArrowLeft" || event.key === "ArrowRight";
-    const measure = along ? (orbit) => sign * (orbit.energy - energy) : (orbit) => sign * (orbit.pattern.ratio - pattern.ratio);
+    const measure =
+        along ? (orbit) => sign * (orbit.energy - energy) : (orbit) => sign * (orbit.pattern.ratio - pattern.ratio);
     const apart = (orbit) => Math.abs(Math.log(orbit.energy / energy));
     let found = null;
     for (const orbit of orbits) {
       if ((along && orbit.pattern !== pattern) || measure(orbit) <= 0) continue;
       if (found === null || measure(orbit) < measure(found) ||
-          (measure(orbit) === measure(found) && apart(orbit) < apart(found))) found = orbit;
+          (measure(orbit) === measure(found) && apart(orbit) < apart(found)))
+        found = orbit;
     }
     if (found !== null) this.choose(found);
   }

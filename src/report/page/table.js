@@ -1,5 +1,5 @@
 /** A table of any length of which only the rows in sight are drawn; sorted by a click on a head, filtered by words. */
-import { element } from "./plot.js";
+import {element} from "./plot.js";
 
 const rowHeight = 26;
 const printed = 500;
@@ -10,15 +10,20 @@ export class Table {
     Object.assign(this, {host, columns, rows, pick});
     this.words = [];
     this.order = {column: null, rising: true};
-    this.head = element("tr", {role: "row"}, ...columns.map((column) => element("th", {scope: "col", role: "columnheader"},
-      element("button", {type: "button", onclick: () => this.sort(column)}, column.title))));
+    this.head = element(
+        "tr", {role: "row"},
+        ...columns.map(
+            (column) => element(
+                "th", {scope: "col", role: "columnheader"},
+                element("button", {type: "button", onclick: () => this.sort(column)}, column.title))));
     this.body = element("tbody");
     this.body.addEventListener("click", (event) => {
       const row = event.target.closest("tr");
       if (row?.dataset.place) this.choose(Number(row.dataset.place));
     });
-    this.table = element("table", {role: "grid", "aria-label": "energy levels", "aria-rowcount": String(rows.length)},
-      element("thead", {}, this.head), this.body);
+    this.table = element(
+        "table", {role: "grid", "aria-label": "energy levels", "aria-rowcount": String(rows.length)},
+        element("thead", {}, this.head), this.body);
     host.replaceChildren(this.table);
     host.tabIndex = 0;
     host.addEventListener("scroll", () => this.draw());
@@ -45,8 +50,8 @@ export class Table {
 
   arrange() {
     const texts = (row) => this.columns.map(({text}) => text(row)).join(" ").toLowerCase();
-    this.shown = this.words.length === 0 ? [...this.rows]
-      : this.rows.filter((row) => this.words.every((word) => texts(row).includes(word)));
+    this.shown = this.words.length === 0 ? [...this.rows] :
+                                           this.rows.filter((row) => this.words.every((word) => texts(row).includes(word)));
     const {column, rising} = this.order;
     if (column !== null) {
       const compare = (a, b) => {
@@ -69,12 +74,18 @@ export class Table {
     const made = [];
     for (let place = first; place < last; ++place) {
       const row = this.shown[place];
-      made.push(element("tr", {
-        role: "row", "data-place": String(place), "aria-rowindex": String(place + 2), "aria-selected": String(row === this.chosen),
-      }, ...this.columns.map(({text}) => element("td", {role: "gridcell"}, text(row)))));
+      made.push(element(
+          "tr", {
+            role: "row",
+            "data-place": String(place),
+            "aria-rowindex": String(place + 2),
+            "aria-selected": String(row === this.chosen),
+          },
+          ...this.columns.map(({text}) => element("td", {role: "gridcell"}, text(row)))));
     }
     const left = this.shown.length - last;
-    if (print && left > 0) made.push(element("tr", {}, element("td", {colspan: String(this.columns.length)}, `and ${left} more`)));
+    if (print && left > 0)
+      made.push(element("tr", {}, element("td", {colspan: String(this.columns.length)}, `and ${left} more`)));
     this.body.replaceChildren(...(first > 0 ? [space(first)] : []), ...made, ...(!print && left > 0 ? [space(left)] : []));
   }
 
@@ -100,8 +111,12 @@ export class Table {
   key(event) {
     const page = Math.max(1, Math.floor(this.host.clientHeight / rowHeight) - 2);
     const to = {
-      ArrowDown: this.place + 1, ArrowUp: this.place - 1, PageDown: this.place + page, PageUp: this.place - page,
-      Home: 0, End: this.shown.length - 1,
+      ArrowDown: this.place + 1,
+      ArrowUp: this.place - 1,
+      PageDown: this.place + page,
+      PageUp: this.place - page,
+      Home: 0,
+      End: this.shown.length - 1,
     }[event.key];
     if (to === undefined) return;
     event.preventDefault();
