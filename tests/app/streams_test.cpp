@@ -300,6 +300,20 @@ TEST_F(Surroundings, EveryFolderIsExportedAndPlotted) {
             EXPECT_FALSE(has(folder + "/" + file + ".png")) << file;
         }
     }
+    // A sweep leaves a page, a study when it is asked for; that of a shared folder has both.
+    EXPECT_TRUE(has("both/report.html"));
+    EXPECT_FALSE(has("accuracy/report.html"));
+    const Result page = run({"report", path("accuracy"), "--out", path("page.html")});
+    EXPECT_EQ(page.exit_code, 0) << page.err;
+    EXPECT_EQ(page.out, "report   " + path("page.html") + "\n");
+    EXPECT_TRUE(has("page.html"));
+    const auto before = contents(path("both/report.html"));
+    EXPECT_EQ(run({"report", path("both")}).exit_code, 0);
+    EXPECT_GT(contents(path("both/report.html")).size(), before.size());  // the prices of the study
+    EXPECT_LT(before.size(), 1'000'000U);
+    expect_refused({"report", path("orbit")}, "expected the folder of a sweep or of an accuracy study");
+    expect_refused({"report", path("nowhere")}, "got nothing");
+    expect_refused({"report", path("both"), "--out", path("nowhere/page.html")}, "cannot be written");
     expect_refused({"plot", path("orbit"), "--orbit", "16,4"}, "--orbit: expected the folder of a sweep");
     expect_refused({"export", path("accuracy"), "--distinct"}, "--distinct: expected the folder of a sweep");
     for (const std::string word : {"gif", "svg,gif", "", "svg,,pdf"})

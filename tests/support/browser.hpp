@@ -94,14 +94,15 @@ inline Key key_named(const std::string& name) {
     return {codes.at(place - 36), numbers.at(place - 36), shift, name};
 }
 
-/// A running Chromium and the socket that is its DevTools "pipe": messages of JSON, each with a NUL at its end.
+/// A running Chromium and the socket that is its DevTools "pipe", 3 to read and 4 to write: messages of JSON, each with
+/// a NUL at its end. If the test dies, the socket is closed and Chromium ends by itself.
 class Process {
 public:
     Process() {
         const auto file = program();
         if (!file) throw std::runtime_error("no chromium: set NSMA_CHROMIUM");
         const std::string folder = folder_.path().string();
-        // HOME and TMPDIR: else files of it stay there.
+        // HOME and TMPDIR: else it leaves files there.
         std::vector<std::string> words{"env", "HOME=" + folder, "TMPDIR=" + folder, *file, "--user-data-dir=" + folder};
         // Root in a container has no sandbox. The proxy does not exist: nothing is reached, whatever a page asks for.
         std::istringstream options(
@@ -125,7 +126,7 @@ public:
             // First out of the way of 3 and 4, which they may be already.
             const int theirs = fcntl(ends[1], F_DUPFD_CLOEXEC, 10);
             const int log = fcntl(::open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), F_DUPFD_CLOEXEC, 10);
-            dup2(::open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
+            dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
             dup2(log, STDOUT_FILENO);
             dup2(log, STDERR_FILENO);
             dup2(theirs, 3);
@@ -208,6 +209,11 @@ private:
     std::string buffer_;
 };
 
+/// The page was left for another document before it answered.
+struct Left : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 /// One page in a browser of its own. What acts on it returns after two frames: handlers have run, it is laid out anew.
 class Page {
 public:
@@ -221,7 +227,7 @@ public:
         call("Emulation.setFocusEmulationEnabled", {{"enabled", true}});  // keys go to the page
     }
 
-    /// In pixels of CSS, of which one is `scale` by `scale` in a screenshot.
+    /// In pixels of CSS, each of them `scale` by `scale` in a screenshot. `mobile`: heeds the page's meta viewport.
     void size(int width, int height, double scale = 1, bool mobile = false) {
         call("Emulation.setDeviceMetricsOverride",
              {{"width", width}, {"height", height}, {"deviceScaleFactor", scale}, {"mobile", mobile}});
@@ -262,10 +268,10 @@ public:
     }
 
     /// Two frames: callbacks of the first have run, observers of its layout too.
-    void settle() { evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done())))"); }
+    void settle() { insist("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done())))"); }
     /// Looks every other frame until the expression is true.
     void wait_until(const std::string& expression) {
-        for (const auto end = seconds_from_now(limit); evaluate("!!(" + expression + ")") != true; settle()) {
+        for (const auto end = seconds_from_now(limit); insist("!!(" + expression + ")") != true; settle()) {
             if (Clock::now() > end) throw std::runtime_error("the page is not yet " + expression);
         }
     }
@@ -341,7 +347,7 @@ public:
         call("HeapProfiler.collectGarbage");
         return call("Runtime.getHeapUsage").at("usedSize");
     }
-    /// Resident memory of the renderers.
+    /// Resident memory of all renderers: of the page's and of one that Chromium keeps for its own window.
     double memory_bytes() {
         double pages = 0;
         const Json answer = call_in("", "SystemInfo.getProcessInfo");
@@ -377,8 +383,21 @@ private:
             const Json message = browser_.receive(end, awaited);
             take(message);
             if (message.value("id", 0) != id) continue;
-            if (message.contains("error")) throw std::runtime_error(method + ": " + message.at("error").dump());
-            return message.at("result");
+            if (!message.contains("error")) return message.at("result");
+            const std::string error = method + ": " + message.at("error").dump();
+            if (error.find("Inspected target navigated") != std::string::npos) throw Left(error);
+            throw std::runtime_error(error);
+        }
+    }
+
+    /// Evaluates, in the next document if this one is left meanwhile, as it may be after a click.
+    Json insist(const std::string& expression) {
+        for (const auto end = seconds_from_now(limit);;) {
+            try {
+                return evaluate(expression);
+            } catch (const Left&) {
+                if (Clock::now() > end) throw;
+            }
         }
     }
 

@@ -105,7 +105,7 @@ function stabilityMap(data, name) {
       element(
           "div", {class: "scroll"},
           element(
-              "table", {class: "map"}, element("caption", {}, `success by method and ${maps[name] ?? name}`),
+              "table", {class: "map", "aria-label": `success by method and ${maps[name] ?? name}`},
               element("thead", {}, head), element("tbody", {}, ...rows))));
 }
 

@@ -30,6 +30,10 @@ constexpr std::array pattern_fields{
     "free_steps",      "contact_steps",    "kernel_dimension", "verdict",          "kind",  "energy_least",
     "energy_greatest", "energy_unbounded", "energy_min_exact", "energy_max_exact", "proved"};
 constexpr std::size_t reason_field = 4;
+// Of a page that a browser still opens at once; the tables have all.
+constexpr std::size_t most_rows = 100'000;
+constexpr std::size_t most_amplitudes = 2'000'000;
+
 constexpr std::array answer_fields{"free_steps",
                                    "contact_steps",
                                    "level",
@@ -117,6 +121,8 @@ Json sweep_json(const SweepStore& store, const fs::path& folder, SweepSummary& s
     const Scene& scene = store.scene();
     Json patterns = Json::array();
     Json answers = Json::array();
+    std::size_t amplitudes = 0;
+    long left_out = 0;
     SeenMotions seen;
     store.for_each([&](const WorkResult& result) {
         if (result.record) {
@@ -129,6 +135,11 @@ Json sweep_json(const SweepStore& store, const fs::path& folder, SweepSummary& s
         count(summary, answer, result.place > 0);
         const bool copy = seen.before(answer, result.place);
         if (copy && result.place > 0) ++summary.copies;
+        amplitudes += answer.orbit ? static_cast<std::size_t>(answer.orbit->beta.size()) : 0;
+        if (answers.size() >= most_rows || amplitudes > most_amplitudes) {
+            ++left_out;
+            return;
+        }
         Json row = row_json(answer_fields, named_values(scene.bar, answer));
         if (answer.orbit) {
             row.push_back(copy);
@@ -144,10 +155,15 @@ Json sweep_json(const SweepStore& store, const fs::path& folder, SweepSummary& s
     summary.interrupted = !store.complete();
     Json fields = answer_fields;
     for (const char* field : {"copy", "solvers", "beta"}) fields.push_back(field);
-    return {{"bar", bar_json(scene.bar)},         {"cells", scene.mesh.cells},
-            {"objective", name(scene.objective)}, {"levels", scene.levels},
-            {"pattern_fields", pattern_fields},   {"patterns", std::move(patterns)},
-            {"answer_fields", std::move(fields)}, {"answers", std::move(answers)},
+    return {{"bar", bar_json(scene.bar)},
+            {"cells", scene.mesh.cells},
+            {"objective", name(scene.objective)},
+            {"levels", scene.levels},
+            {"pattern_fields", pattern_fields},
+            {"patterns", std::move(patterns)},
+            {"answer_fields", std::move(fields)},
+            {"answers", std::move(answers)},
+            {"left_out", left_out},
             {"prices", prices_json(folder)}};
 }
 

@@ -85,6 +85,11 @@ const columnsOf = ({bar}) =>
        value: ({get}) => get("peak_force_n"),
        text: ({get, orbit}) => (orbit ? si(get("peak_force_n"), "N", 4) : "")
      },
+     {
+       title: "gap",
+       value: ({get}) => get("objective_gap"),
+       text: ({get}) => (get("objective_gap") === null ? "" : `${short(100 * get("objective_gap"), 2)} %`)
+     },
      {title: "proof", value: ({proof}) => proof, text: ({proof}) => proof ?? ""},
      {
        title: "kind",
@@ -127,7 +132,8 @@ export class SweepPage {
         show);
     this.table = new Table(find("#levels"), columnsOf(report), report.rows, (row) => row.orbit && this.choose(row));
     this.table.counted = (shown, all) => {
-      find("#count").textContent = shown === all ? `${all} rows` : `${shown} of ${all} rows`;
+      const left = report.left_out > 0 ? `; ${report.left_out} more are in levels.csv only` : "";
+      find("#count").textContent = (shown === all ? `${all} rows` : `${shown} of ${all} rows`) + left;
     };
     this.table.arrange();
     this.find = find;
