@@ -24,10 +24,7 @@ double sum(const std::vector<double>& values) {
 }  // namespace
 
 WaveQueue::WaveQueue(const Bar& bar, const Mesh& mesh, const State& state)
-    : bar_(bar),
-      mesh_(mesh),
-      step_per_wave_(2.0 * mesh.time_step(bar)),
-      force_per_wave_(-2.0 * bar.impedance() * bar.area) {
+    : bar_(bar), mesh_(mesh), time_step_(mesh.time_step(bar)), force_per_wave_(-2.0 * bar.impedance() * bar.area) {
     validate(bar);
     validate(mesh, state);
     const int cells = mesh.cells;
@@ -39,21 +36,37 @@ WaveQueue::WaveQueue(const Bar& bar, const Mesh& mesh, const State& state)
         waves_[static_cast<std::size_t>(cells - i)] = 0.5 * (velocity - stress);
         waves_[static_cast<std::size_t>(cells + i - 1)] = -0.5 * (velocity + stress);
     }
-    tip_ = -0.5 * step_per_wave_ * sum(waves_);
+    tip_ = -time_step_ * sum(waves_);
 }
 
-void WaveQueue::step_free() {
-    tip_ += step_per_wave_ * waves_[head_];
-    waves_[head_] = -waves_[head_];
+void WaveQueue::step(double tip_velocity) {
+    tip_ += time_step_ * tip_velocity;
+    waves_[head_] -= tip_velocity;  // of a free end exactly -b_n
     advance();
 }
 
-void WaveQueue::step_contact() { advance(); }
+void WaveQueue::damp(double factor) {
+    // The two waves of a cell, v = b' - b'' and -sigma/z = b' + b'': the first from the head on, the second behind it.
+    const double same = 0.5 * (1.0 + factor);
+    const double other = 0.5 * (1.0 - factor);
+    const std::size_t cells = waves_.size() / 2;
+    std::size_t away = head_ + cells;
+    if (away >= waves_.size()) away -= waves_.size();
+    std::size_t toward = away;
+    for (std::size_t i = 0; i < cells; ++i) {
+        toward = toward == 0 ? waves_.size() - 1 : toward - 1;
+        const double first = waves_[toward];
+        const double second = waves_[away];
+        waves_[toward] = same * first + other * second;
+        waves_[away] = other * first + same * second;
+        if (++away == waves_.size()) away = 0;
+    }
+}
 
 void WaveQueue::advance() {
     if (++head_ == waves_.size()) {
         head_ = 0;
-        tip_ = -0.5 * step_per_wave_ * sum(waves_);
+        tip_ = -time_step_ * sum(waves_);
     }
 }
 

@@ -1,0 +1,65 @@
+#include "driven_bar.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace nsma {
+namespace {
+
+// In displacement units: this near the tip is at the wall. Far below every displacement, far above their rounding.
+constexpr double touch_tolerance = 1e-11;
+
+}  // namespace
+
+DrivenBar::DrivenBar(const Bar& bar, const Mesh& mesh, const State& state, const Damping& damping)
+    : queue_(bar, mesh, state),
+      gap_(bar.gap),
+      touch_(touch_tolerance * bar.displacement_unit()),
+      time_step_(mesh.time_step(bar)),
+      area_(bar.area),
+      impedance_(bar.impedance()) {
+    if (!std::isfinite(damping.value) || damping.value < 0)
+        throw std::invalid_argument(fmt::format("damping: expected a finite number >= 0, got {}", damping.value));
+    if (damping.kind == Damping::Kind::tip) dashpot_ = damping.value;
+    if (damping.kind == Damping::Kind::distributed) half_step_ = std::exp(-0.5 * damping.value * time_step_);
+}
+
+DrivenBar::Step DrivenBar::step(double force) {
+    Step step;
+    step.loss = damp();
+    const double pressure = force / area_;
+    const double wave = queue_.arriving();
+    double velocity = (2.0 * wave + pressure / impedance_) / (1.0 + dashpot_);
+    const double room = gap_ - queue_.tip();
+    if (time_step_ * velocity - room > touch_) {
+        velocity = std::abs(room) <= touch_ ? 0.0 : room / time_step_;
+        // What the end still lacks: stress - force + dashpot, with stress z (v* - 2 b).
+        step.wall_force = area_ * (impedance_ * ((1.0 + dashpot_) * velocity - 2.0 * wave) - pressure);
+    }
+    step.tip_velocity = velocity;
+    step.work = force * velocity * time_step_;
+    step.loss += dashpot_ * impedance_ * area_ * velocity * velocity * time_step_;
+    step.landing = step.wall_force * velocity * time_step_;
+    queue_.step(velocity);
+    step.loss += damp();
+    return step;
+}
+
+// Over half a step; what it takes [J].
+double DrivenBar::damp() {
+    if (half_step_ == 1.0) return 0.0;
+    const double before = queue_.energy();
+    queue_.damp(half_step_);
+    return before - queue_.energy();
+}
+
+State rest_state(const Bar& bar, const Mesh& mesh) {
+    validate(mesh);
+    State state = State::Zero(mesh.window());
+    if (bar.gap < 0) state.head(mesh.cells).setConstant(bar.young_modulus * bar.gap / bar.length);
+    return state;
+}
+
+}  // namespace nsma
