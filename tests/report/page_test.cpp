@@ -124,6 +124,16 @@ TEST_F(ReportPage, ShowsTheMotionThatWasComputed) {
         page->wait_until("document.querySelector('#message').textContent !== ''");
         EXPECT_EQ(page->evaluate("document.querySelector('#message').textContent"),
                   "No orbit of (r = 48, p = 16) at 7 is in this report.");
+        // So it is where the page opens with it; the address stays, another orbit is shown.
+        page->open("about:blank");
+        page->open("file://" + file.string() + "#r=48&p=16&E=7");
+        EXPECT_EQ(page->evaluate("document.querySelector('#message').textContent"),
+                  "No orbit of (r = 48, p = 16) at 7 is in this report.");
+        EXPECT_EQ(shown(), "#r=48&p=16&E=7");
+        // In joules as well.
+        const double joules = 6.0 * scene.bar.energy_unit();
+        page->evaluate("location.hash = '#r=60&p=10&E=" + json(joules).dump() + "J'");
+        page->wait_until("nsma.sweep.orbit.level === 6");
         EXPECT_THAT(page->errors(), testing::IsEmpty());
         page.reset();
         std::filesystem::remove_all(path / "sweep");
@@ -174,6 +184,33 @@ TEST_F(ReportPage, LayersAndUnitsOfTheDiagramAreChosen) {
     EXPECT_NE(page->evaluate("nsma.sweep.diagram.plot.view"), before);
     page->click("#zoom-reset");
     EXPECT_EQ(page->evaluate("nsma.sweep.diagram.plot.view"), before);
+    // Never farther out than the whole, nor nearer than can be told.
+    page->evaluate("for (let i = 0; i < 200; ++i) nsma.sweep.diagram.plot.zoom(1.25)");
+    EXPECT_EQ(page->evaluate("nsma.sweep.diagram.plot.view"), before);
+    page->evaluate("for (let i = 0; i < 500; ++i) nsma.sweep.diagram.plot.zoom(0.7)");
+    EXPECT_EQ(page->evaluate("nsma.sweep.diagram.plot.view.x[0] < nsma.sweep.diagram.plot.view.x[1]"), true);
+}
+
+// Patterns of one period share a frequency: orbits lie upon each other.
+TEST_F(ReportPage, EveryOrbitIsReachedByKeysAndClicks) {
+    open(scene_text("Many", unit_bar, "period = [3.4, 3.6]"));
+    const json reached = page->evaluate(
+        "(() => { const {sweep} = nsma, seen = new Set(), open = [sweep.orbit];"
+        " while (open.length > 0) { const orbit = open.pop(); if (seen.has(orbit)) continue; seen.add(orbit);"
+        " for (const key of ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown']) { sweep.orbit = orbit;"
+        " sweep.choose = (next) => open.push(next); sweep.key({key, preventDefault() {}}); } }"
+        " delete sweep.choose; return [seen.size, sweep.report.orbits.length]; })()");
+    EXPECT_EQ(reached[0], reached[1]);
+    EXPECT_GT(reached[1], 20);
+    // Clicks on one place go through all that lie there.
+    const json clicked = page->evaluate(
+        "(() => { const {sweep} = nsma, {diagram} = sweep, {plot} = diagram, {orbits} = sweep.report;"
+        " const place = ({x, y}) => plot.nearest(plot.x(x), plot.y(y)).filter((point) => point.orbit);"
+        " const most = orbits.map((orbit) => place(diagram.pointOf(orbit))).sort((a, b) => b.length - a.length)[0];"
+        " const seen = new Set(); for (const point of most) { diagram.pickOf(most); seen.add(sweep.orbit); }"
+        " return [seen.size, most.length]; })()");
+    EXPECT_EQ(clicked[0], clicked[1]);
+    EXPECT_GT(clicked[1], 1);
 }
 
 TEST_F(ReportPage, TheTableIsMovedThroughByKeysSortedAndFiltered) {
@@ -197,6 +234,9 @@ TEST_F(ReportPage, TheTableIsMovedThroughByKeysSortedAndFiltered) {
     const std::string count = page->evaluate("document.querySelector('#count').textContent");
     EXPECT_THAT(count, testing::EndsWith(" of " + std::to_string(all) + " rows"));
     EXPECT_LT(page->evaluate("nsma.sweep.table.shown.length").get<int>(), all);
+    // A filter shows its rows wherever the table was.
+    page->evaluate("document.querySelector('#levels').scrollTop = 1e6; nsma.sweep.table.filter('least')");
+    EXPECT_GT(page->evaluate("document.querySelectorAll('#levels tr[role=row]').length").get<int>(), 5);
     // By energy, the greatest first.
     const std::string head = "document.querySelectorAll('#levels th')[7]";
     page->evaluate(head + ".firstChild.click(), " + head + ".firstChild.click()");
@@ -284,6 +324,13 @@ TEST_F(ReportPage, FitsADeskAPhoneAndPaper) {
     page->media("print");
     EXPECT_EQ(page->evaluate("getComputedStyle(document.querySelector('.tools')).display"), "none");
     EXPECT_EQ(page->pdf().compare(0, 4, "%PDF"), 0);
+    // Paper is white whatever the theme; afterwards the theme is as it was, and so is the view.
+    page->evaluate("document.documentElement.dataset.theme = 'dark', nsma.sweep.animation.to(20)");
+    page->evaluate("window.dispatchEvent(new Event('beforeprint'))");
+    EXPECT_EQ(paper(), "rgb(255, 255, 255)");
+    page->evaluate("window.dispatchEvent(new Event('afterprint'))");
+    EXPECT_EQ(paper(), "rgb(22, 24, 27)");
+    EXPECT_EQ(page->evaluate("nsma.sweep.animation.time"), 20);
 }
 
 TEST_F(ReportPage, WithoutAnOrbitItSaysSo) {
@@ -297,6 +344,8 @@ TEST_F(ReportPage, WithoutAnOrbitItSaysSo) {
     open_page(path / "sweep");
     EXPECT_THAT(page->evaluate("document.querySelector('#orbit').textContent").get<std::string>(),
                 testing::HasSubstr("No orbit was found"));
+    page->evaluate("document.querySelector('#diagram svg').focus()");
+    page->key("ArrowRight");
 }
 
 TEST_F(ReportPage, OfAnAccuracyStudyNamesMethodsAndCauses) {
@@ -328,7 +377,7 @@ TEST_F(ReportPage, OfAnAccuracyStudyNamesMethodsAndCauses) {
     const auto text = [&](const char* selector) {
         return page->evaluate("document.querySelector('" + std::string(selector) + "').textContent").get<std::string>();
     };
-    EXPECT_THAT(text("#accuracy"), testing::HasSubstr("25 % off-level"));
+    EXPECT_THAT(text("#accuracy"), testing::HasSubstr("25 % ✓, off-level"));
     EXPECT_EQ(page->evaluate("document.querySelector('#sweep')"), json());
     EXPECT_EQ(page->evaluate("document.querySelectorAll('#speed path.layer').length"), 2);
     page->click("#accuracy .legend input");

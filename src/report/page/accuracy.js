@@ -5,6 +5,7 @@ import {short, si} from "./units.js";
 
 const markNames = ["circle", "square", "diamond", "triangle", "down", "cross", "plus", "bar"];
 const leastError = 1e-16;
+const mostError = 60;  // and what has none
 const maps = {
   level: "energy level from E_min to E_max",
   start: "distance of the start",
@@ -27,7 +28,8 @@ function speedChart(host, data, pageTools) {
   const sizes = [...new Set(programs.map(({size}) => size))];
   const pointsOf = (size, method) =>
       programs.filter((one) => one.size === size && one.method === method)
-          .map((one) => ({x: one.seconds, y: Math.max(one.error ?? 1e3, leastError), record: one}));
+          .map(
+              (one) => ({x: one.seconds, y: Math.min(Math.max(one.error ?? Infinity, leastError), mostError), record: one}));
   const layersOf = (size) => methods.map((method, i) => ({
                                            name: `method-${i}`,
                                            mark: markNames[i % markNames.length],
@@ -98,7 +100,7 @@ function stabilityMap(data, name) {
                                    "bad",
               title: `${method}, ${columns.find(([at]) => at === column)[1]}: ${spent.join(", ")} of ${runs}`,
             },
-            share === 1 ? "✓" : `${Math.round(100 * share)} % ${text}`);
+            share === 1 ? "✓" : `${Math.round(100 * share)} % ✓, ${text}`);
       })));
   return element(
       "section", {}, element("h3", {}, maps[name] ?? name),

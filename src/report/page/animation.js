@@ -34,7 +34,6 @@ export class Animation {
     if (playing === this.playing) return;
     this.playing = playing;
     this.play.textContent = playing ? "Pause" : "Play";
-    this.play.setAttribute("aria-pressed", String(playing));
     let before = null;
     const frame = (now) => {
       if (!this.playing) return;
@@ -54,7 +53,8 @@ export class Animation {
     const {motion} = this;
     const share = time / motion.period;
     this.output.textContent = `t = ${si(time * motion.step, "s", 4)} = ${short(share, 3)} T, ` +
-        `tip at ${si(motion.tipAt(time), "m", 4)}, force ${si(0 - motion.forceAt(time), "N", 4)}`;
+        `tip at ${si(motion.tipAt(time), "m", 4, motion.bar.displacement_unit)}, force ${
+                                  si(-motion.forceAt(time), "N", 4, motion.bar.impedance * motion.bar.area)}`;
     this.draw();
     this.moved(time);
   }
@@ -69,8 +69,10 @@ export class Animation {
     const context = canvas.getContext("2d");
     context.setTransform(scale, 0, 0, scale, 0, 0);
     const [left, right, top, bottom] = [24, width - 70, 34, 92];
-    // Displacements take a fifth of the width.
-    const enlarge = 0.2 * (right - left) / Math.max(this.high - this.low, Number.MIN_VALUE);
+    // Displacements take a fifth of the width, and less where the bar would fold over itself.
+    const strain = this.stress * motion.bar.travel_time / (motion.bar.impedance * motion.bar.length);
+    const most = 0.6 * (right - left) / (motion.bar.length * Math.max(strain, Number.MIN_VALUE));
+    const enlarge = Math.min(0.2 * (right - left) / Math.max(this.high - this.low, Number.MIN_VALUE), most);
     const rest = right - this.high * enlarge;
     const place = (cells) => left + (rest - left) * cells / motion.cells + enlarge * motion.displacement(cells, this.time);
     context.fillStyle = themed("--paper");

@@ -48,8 +48,10 @@ export class Curves {
       height: 170,
       title: "",
       legend: {show: false},
-      cursor: {sync: {key: "time"}, drag: {x: true, y: false}},
-      scales: {x: {time: false}},
+      cursor: {y: false, sync: {key: "time"}, drag: {x: true, y: false}},
+      // Of a force that is zero throughout as well.
+      scales:
+          {x: {time: false}, y: {range: (_, lo, hi) => (lo === hi ? [lo - 1, hi + 1] : uPlot.rangeNum(lo, hi, 0.1, true))}},
       axes: [
         {...axis, label: timeLabel, labelSize: 18, labelFont: "12px system-ui", size: 34},
         {...axis, label, labelSize: 18, labelFont: "12px system-ui", size: 56},
@@ -66,7 +68,8 @@ export class Curves {
         },
       ],
       hooks: {
-        drawClear: [(plot) => this.shade(plot, wall)],
+        drawClear: [(plot) => this.shade(plot)],
+        drawAxes: [(plot) => wall !== undefined && this.drawWall(plot, wall)],
         setCursor: [(plot) => {
           if (plot.cursor.left >= 0 && plot.cursor.event) this.hover(plot.posToVal(plot.cursor.left, "x") * this.toSteps);
         }],
@@ -77,8 +80,8 @@ export class Curves {
     return new uPlot(options, [times, values], host);
   }
 
-  // Contact phases are shaded; the wall is a line.
-  shade(plot, wall) {
+  // Contact phases are shaded, under all else.
+  shade(plot) {
     const {ctx, bbox} = plot;
     const {free, period} = this.motion;
     ctx.save();
@@ -91,22 +94,27 @@ export class Curves {
       const to = plot.valToPos((k + 1) * period / this.toSteps, "x", true);
       ctx.fillRect(from, bbox.top, to - from, bbox.height);
     }
-    if (wall !== undefined) {
-      const at = plot.valToPos(wall, "y", true);
-      ctx.strokeStyle = themed("--ink");
-      ctx.setLineDash([6, 4]);
-      ctx.beginPath();
-      ctx.moveTo(bbox.left, at);
-      ctx.lineTo(bbox.left + bbox.width, at);
-      ctx.stroke();
-    }
+    ctx.restore();
+  }
+
+  // A line over the grid.
+  drawWall(plot, wall) {
+    const {ctx, bbox} = plot;
+    const at = plot.valToPos(wall, "y", true);
+    ctx.save();
+    ctx.strokeStyle = themed("--ink");
+    ctx.setLineDash([6, 4]);
+    ctx.beginPath();
+    ctx.moveTo(bbox.left, at);
+    ctx.lineTo(bbox.left + bbox.width, at);
+    ctx.stroke();
     ctx.restore();
   }
 
   /** Puts the cursor at a time in steps. */
   mark(steps) {
     for (const plot of this.plots) {
-      const left = plot.valToPos((steps % (periodsShown * this.motion.period)) / this.toSteps, "x");
+      const left = plot.valToPos(steps / this.toSteps, "x");
       plot.setCursor({left, top: plot.bbox.height / 2 / devicePixelRatio}, false);
     }
   }

@@ -29,7 +29,10 @@ function numbers(report, orbit) {
     ["impact speed", si(orbit.get("impact_speed_m_s"), "m/s")],
     ["peak stress", si(orbit.get("peak_stress_pa"), "Pa")],
     ["least tip displacement", si(orbit.get("tip_min_m"), "m")],
-    [`objective ${report.objective}`, short(orbit.get("objective_value"), 8)],
+    [
+      `objective ${report.objective}`,
+      si(orbit.get("objective_value") * report.objective_unit[0], report.objective_unit[1], 6)
+    ],
     ["found by", orbit.get("method")],
     ["smallest period", `${orbit.get("minimal_period_steps")} steps`],
     ...(same ? [["same motion as", `(r = ${same}, p = ${orbit.get("same_contact_steps")})`]] : []),
@@ -47,11 +50,14 @@ function conditions(motion, orbit) {
   ];
   return table("Conditions", ["condition", "what it leaves", "binding", "replayed violation"], [
     row("COND1, no penetration in flight",
-        motion.free > 1 ? `at least ${si(left.clearance, "m", 4)} from the wall, in step ${left.closest}` :
-                          "one step of flight",
+        motion.free > 1 ?
+            `at least ${si(left.clearance, "m", 4, motion.bar.displacement_unit)} from the wall, in step ${left.closest}` :
+            "one step of flight",
         left.touching, "touches in step"),
-    row("COND2, contact at the wall", `x = ${si(motion.tip[motion.period], "m", 6)}`, [motion.free], "from step"),
-    row("COND3, no tension in contact", `presses with at least ${si(0 + left.weakest, "N", 4)}`, left.silent,
+    row("COND2, contact at the wall", `x = ${si(motion.tip[motion.period], "m", 6, motion.bar.displacement_unit)}`,
+        [motion.free], "from step"),
+    row("COND3, no tension in contact",
+        `presses with at least ${si(left.weakest, "N", 4, Math.max(...motion.force.map(Math.abs)))}`, left.silent,
         "no force in step"),
   ]);
 }
@@ -99,8 +105,8 @@ function prices(report, orbit) {
           ({name, unit, active, below, above}) =>
               [name,
                active ? "●" : "○",
-               above === below ? `${short(above, 5)} per ${unit}` :
-                                 `${short(below, 5)} falling, ${short(above, 5)} rising, per ${unit}`,
+               above === below ? `${short(above, 5)} ${found.unit} per ${unit}` :
+                                 `${short(below, 5)} falling, ${short(above, 5)} rising, ${found.unit} per ${unit}`,
   ]),
       )];
 }

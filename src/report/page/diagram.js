@@ -54,6 +54,14 @@ export class Diagram {
     this.plot.draw();
   }
 
+  // Where several orbits have one place a click takes the next one.
+  pickOf(points) {
+    const orbits = points.map(({orbit}) => orbit).filter((orbit) => orbit);
+    if (orbits.length === 0) return;
+    const now = orbits.indexOf(this.plot.options.selected ? this.plot.options.selected.orbit : null);
+    this.pick(orbits[(now + 1) % orbits.length]);
+  }
+
   energy(ratio) {
     return this.units.energy ? ratio * this.report.bar.energy_unit : ratio;
   }
@@ -105,7 +113,7 @@ export class Diagram {
       },
       layers: this.layers(),
       selected: this.plot?.options.selected ? this.pointOf(this.plot.options.selected.orbit) : null,
-      pick: ({orbit}) => orbit && this.pick(orbit),
+      pick: (points) => this.pickOf(points),
       hint: (point) => this.describe(point),
     };
   }
@@ -115,7 +123,9 @@ export class Diagram {
     const of = orbit?.pattern ?? pattern;
     const name =
         `(r = ${of.free}, p = ${of.contact}), ω/ω₁ = ${short(of.ratio, 5)}, ${si(of.ratio * bar.first_frequency, "Hz")}`;
-    if (level !== undefined) return `${name}: no orbit at ${short(level, 6)}`;
+    if (level !== undefined)
+      return `${name}: no orbit at ${bar.gap === 0 ? "" : `E/E_g = ${short(level, 6)}, `}${
+          si(level * bar.energy_unit, "J")}`;
     if (!orbit) return name;
     const ratio = bar.gap === 0 ? "" : `E/E_g = ${short(orbit.energy, 6)}, `;
     return `${name}: ${ratio}${si(orbit.energy * bar.energy_unit, "J")}${orbit.proof ? `, ${orbit.proof}` : ""}`;

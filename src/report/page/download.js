@@ -1,5 +1,6 @@
 /** Files made in the page: tables, drawings, pictures. */
-import {element} from "./plot.js";
+import {themed} from "./curves.js";
+import {element, shape} from "./plot.js";
 
 function save(name, content, type) {
   const url = URL.createObjectURL(new Blob([content], {type}));
@@ -22,7 +23,10 @@ export function saveCsv(name, text) {
 // Styles come from the sheet of the page: a drawing of its own must bring them along.
 function standalone(svg) {
   const copy = svg.cloneNode(true);
-  const kept = ["fill", "stroke", "stroke-width", "stroke-dasharray", "opacity", "font-size", "font-family"];
+  const kept = [
+    "fill", "stroke", "stroke-width", "stroke-dasharray", "opacity", "font-size", "font-family", "stroke-linecap",
+    "fill-opacity"
+  ];
   const [from, to] = [svg.querySelectorAll("*"), copy.querySelectorAll("*")];
   from.forEach((one, i) => {
     const style = getComputedStyle(one);
@@ -32,6 +36,7 @@ function standalone(svg) {
   copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
   copy.setAttribute("width", width);
   copy.setAttribute("height", height);
+  copy.prepend(shape("rect", {width, height, fill: themed("--paper")}));
   return {text: new XMLSerializer().serializeToString(copy), width: Number(width), height: Number(height)};
 }
 
@@ -43,16 +48,14 @@ export function savePng(name, canvas) {
   canvas.toBlob((blob) => save(name, blob, "image/png"));
 }
 
-/** A drawing as a picture of twice its size, on the page's paper. */
-export function saveDrawing(name, svg, paper) {
+/** A drawing as a picture of twice its size. */
+export function saveDrawing(name, svg) {
   const {text, width, height} = standalone(svg);
   const image = new Image();
   image.addEventListener("load", () => {
     const canvas = element("canvas");
     [canvas.width, canvas.height] = [2 * width, 2 * height];
     const context = canvas.getContext("2d");
-    context.fillStyle = paper;
-    context.fillRect(0, 0, canvas.width, canvas.height);
     context.drawImage(image, 0, 0, canvas.width, canvas.height);
     savePng(name, canvas);
   });

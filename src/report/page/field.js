@@ -61,7 +61,7 @@ export class SpaceTime {
     this.draw(scale);
   }
 
-  // The field itself, at most 100 000 samples, off the places and times at which a front passes.
+  // The field itself, at most 128 000 samples, off the places and times at which a front passes.
   paint() {
     const {motion} = this;
     const columns = Math.min(Math.round(this.width), 800);
@@ -97,10 +97,11 @@ export class SpaceTime {
     context.strokeStyle = context.fillStyle = themed("--ink");
     context.strokeRect(left, top, width, height);
     context.font = "12px system-ui";
+    context.textAlign = "left";
     const {title, unit} = kinds[this.kind];
     const shown = scaled(this.largest, unit);
     const limit = short(this.largest / shown.factor, 3);
-    context.fillText(`${title}; blue −${limit} to orange ${limit} ${shown.unit}; bar above: contact`, left, 14);
+    context.fillText(`${title}; blue −${limit} to orange ${limit} ${shown.unit}; bar above: contact`, left, 14, width);
     context.textAlign = "right";
     context.fillText("wall", left - 6, top + 10);
     context.fillText("held end", left - 6, top + height);
@@ -123,8 +124,7 @@ export class SpaceTime {
     const scale = devicePixelRatio;
     this.draw(scale);
     const context = this.canvas.getContext("2d");
-    const at =
-        this.margin.left + this.width * (steps % (periodsShown * this.motion.period)) / (periodsShown * this.motion.period);
+    const at = this.margin.left + this.width * steps / (periodsShown * this.motion.period);
     context.beginPath();
     context.moveTo(at, this.margin.top);
     context.lineTo(at, this.margin.top + this.height);

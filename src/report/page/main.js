@@ -23,15 +23,33 @@ if (data.accuracy)
 else
   find("#accuracy").remove();
 
+const root = document.documentElement;
+const system = matchMedia("(prefers-color-scheme: dark)");
+const redraw = () => {
+  for (const page of pages) page.redraw();
+};
 find("#theme").addEventListener("click", () => {
-  const root = document.documentElement;
-  const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  const dark = root.dataset.theme ? root.dataset.theme === "dark" : system.matches;
   root.dataset.theme = dark ? "light" : "dark";
-  for (const page of pages) page.redraw();
+  redraw();
 });
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-  for (const page of pages) page.redraw();
+system.addEventListener("change", redraw);
+
+// Paper is white.
+let onScreen = null;
+window.addEventListener("beforeprint", () => {
+  onScreen = root.dataset.theme ?? null;
+  root.dataset.theme = "light";
+  redraw();
 });
+window.addEventListener("afterprint", () => {
+  if (onScreen === null)
+    delete root.dataset.theme;
+  else
+    root.dataset.theme = onScreen;
+  redraw();
+});
+
 if (data.sweep && data.accuracy) {
   find("#title").after(
       element("nav", {}, element("a", {href: "#sweep"}, "orbits"), " ", element("a", {href: "#accuracy"}, "accuracy")));

@@ -73,7 +73,7 @@ export class Plot {
     this.hidden = new Set();
     this.margin = {left: 62, right: 14, top: 12, bottom: 46};
     this.svg = shape("svg", {role: "application", tabindex: "0", "aria-label": options.name});
-    this.hint = element("output", {class: "hint", hidden: true});
+    this.hint = element("output", {class: "hint", "aria-live": "off", hidden: true});
     host.replaceChildren(this.svg, this.hint);
     this.reset();
     this.listen();
@@ -120,10 +120,24 @@ export class Plot {
 
   zoom(factor, place = {x: 0.5, y: 0.5}) {
     for (const axis of ["x", "y"]) {
-      const ends = [place[axis] - place[axis] * factor, place[axis] + (1 - place[axis]) * factor];
-      this.view[axis] = ends.map((end) => this.valueAt(axis, end));
+      this.look(axis, place[axis] - place[axis] * factor, place[axis] + (1 - place[axis]) * factor);
     }
     this.draw();
+  }
+
+  // Shows what lies between two shares of the axis: never more than the whole, nor less than can be told apart.
+  look(axis, from, to) {
+    const {lo, hi, log} = this.options[axis];
+    const [least, greatest] = [from, to].map((share) => this.valueAt(axis, share));
+    const span = log ? Math.log(greatest / least) : greatest - least;
+    const whole = log ? Math.log(hi / lo) : hi - lo;
+    if (!(span > 1e-9 * whole)) return;
+    this.view[axis] = span < whole ? [least, greatest] : [lo, hi];
+  }
+
+  get isWhole() {
+    return ["x", "y"].every(
+        (axis) => this.view[axis][0] === this.options[axis].lo && this.view[axis][1] === this.options[axis].hi);
   }
 
   draw() {
@@ -195,18 +209,18 @@ export class Plot {
     this.svg.append(grid);
   }
 
-  /** The mark nearest to a place in pixels, of the layers that are shown. */
+  /** The marks at the one nearest to a place in pixels, of the layers that are shown; the uppermost first. */
   nearest(px, py, reach = 18) {
-    let found = null;
-    let best = reach * reach;
-    for (const layer of this.options.layers) {
-      if (this.hidden.has(layer.name) || !layer.points) continue;
-      for (const point of layer.points) {
-        const distance = (this.x(point.x) - px) ** 2 + (this.y(point.y) - py) ** 2;
-        if (distance <= best) [best, found] = [distance, point];
-      }
+    const shown = this.options.layers.filter((layer) => layer.points && !this.hidden.has(layer.name));
+    const points = shown.reverse().flatMap((layer) => layer.points);
+    const apart = (point, x, y) => (this.x(point.x) - x) ** 2 + (this.y(point.y) - y) ** 2;
+    let best = null;
+    for (const point of points) {
+      if (apart(point, px, py) <= (best === null ? reach ** 2 : apart(best, px, py) - 1e-9)) best = point;
     }
-    return found;
+    if (best === null) return [];
+    const [x, y] = [this.x(best.x), this.y(best.y)];
+    return points.filter((point) => apart(point, x, y) < 1);
   }
 
   place(event) {
@@ -218,10 +232,11 @@ export class Plot {
     return {x: (px - this.margin.left) / this.inner.width, y: 1 - (py - this.margin.top) / this.inner.height};
   }
 
-  showHint(point, px, py) {
-    this.hint.hidden = point === null;
-    if (point === null) return;
-    this.hint.textContent = this.options.hint(point);
+  showHint(points, px, py) {
+    this.hint.hidden = points.length === 0;
+    if (points.length === 0) return;
+    const more = points.length > 1 ? ` (1 of ${points.length} here; click again for the next)` : "";
+    this.hint.textContent = this.options.hint(points[0]) + more;
     const right = px > this.host.clientWidth / 2;
     this.hint.style.left = right ? "" : `${px + 14}px`;
     this.hint.style.right = right ? `${this.host.clientWidth - px + 14}px` : "";
@@ -230,12 +245,19 @@ export class Plot {
 
   listen() {
     let from = null;
+    const forget = () => {
+      from = null;
+      for (const size of ["width", "height"]) this.box.setAttribute(size, 0);
+    };
     this.svg.addEventListener("wheel", (event) => {
+      const factor = Math.exp(0.002 * Math.max(-200, Math.min(200, event.deltaY)));
+      if (factor > 1 && this.isWhole) return;  // the page scrolls
       event.preventDefault();
-      this.zoom(event.deltaY > 0 ? 1.25 : 0.8, this.fractions(this.place(event)));
+      this.zoom(factor, this.fractions(this.place(event)));
     }, {passive: false});
     this.svg.addEventListener("pointerdown", (event) => {
-      if (event.pointerType !== "touch") from = this.place(event);
+      this.dragged = false;
+      if (event.button === 0 && event.pointerType !== "touch") from = this.place(event);
     });
     this.svg.addEventListener("pointermove", (event) => {
       const [px, py] = this.place(event);
@@ -246,27 +268,26 @@ export class Plot {
       }
       this.showHint(this.nearest(px, py), px, py);
     });
-    this.svg.addEventListener("pointerleave", () => this.showHint(null));
+    this.svg.addEventListener("pointerleave", () => this.showHint([]));
+    window.addEventListener("pointercancel", forget);
     window.addEventListener("pointerup", (event) => {
       const start = from;
-      from = null;
+      forget();
       if (start === null) return;
       const end = this.place(event);
-      for (const size of ["width", "height"]) this.box.setAttribute(size, 0);
-      if (Math.abs(end[0] - start[0]) < 6 || Math.abs(end[1] - start[1]) < 6) return;
+      const wide = [0, 1].map((i) => Math.abs(end[i] - start[i]) >= 6);
+      if (!wide[0] && !wide[1]) return;
       this.dragged = true;  // the click that follows picks nothing
       const [a, b] = [this.fractions(start), this.fractions(end)];
-      const ends = {};
-      for (const axis of ["x", "y"]) ends[axis] = [Math.min(a[axis], b[axis]), Math.max(a[axis], b[axis])];
-      for (const axis of ["x", "y"]) this.view[axis] = ends[axis].map((fraction) => this.valueAt(axis, fraction));
+      ["x", "y"].forEach((axis, i) => {
+        if (wide[i]) this.look(axis, Math.min(a[axis], b[axis]), Math.max(a[axis], b[axis]));
+      });
       this.draw();
     });
     this.svg.addEventListener("click", (event) => {
-      const dragged = this.dragged;
-      this.dragged = false;
-      if (dragged) return;
-      const point = this.nearest(...this.place(event));
-      if (point !== null && this.options.pick) this.options.pick(point);
+      if (this.dragged || !this.options.pick) return;
+      const points = this.nearest(...this.place(event));
+      if (points.length > 0) this.options.pick(points);
     });
     this.svg.addEventListener("dblclick", () => this.reset());
     this.svg.addEventListener("keydown", (event) => {

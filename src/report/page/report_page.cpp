@@ -111,6 +111,7 @@ Json prices_json(const fs::path& folder) {
                           {"contact_steps", pattern.contact_steps},
                           {"level", record.level ? Json(*record.level) : Json()},
                           {"objective", name(record.objective)},
+                          {"unit", objective_unit(record.objective, scene.bar).second},
                           {"refusal", record.refusal},
                           {"prices", std::move(rows)}});
     }
@@ -158,6 +159,7 @@ Json sweep_json(const SweepStore& store, const fs::path& folder, SweepSummary& s
     return {{"bar", bar_json(scene.bar)},
             {"cells", scene.mesh.cells},
             {"objective", name(scene.objective)},
+            {"objective_unit", objective_unit(scene.objective, scene.bar)},
             {"levels", scene.levels},
             {"pattern_fields", pattern_fields},
             {"patterns", std::move(patterns)},

@@ -1,6 +1,6 @@
 /** The page of a sweep: diagram, one orbit, table. */
 import {Animation} from "./animation.js";
-import {Curves, themed} from "./curves.js";
+import {Curves} from "./curves.js";
 import {showDetails} from "./details.js";
 import {Diagram} from "./diagram.js";
 import {motionCsv, saveCsv, saveDrawing, savePng, saveSvg} from "./download.js";
@@ -73,7 +73,11 @@ const columnsOf = ({bar}) =>
        text: ({pattern}) => si(pattern.ratio * bar.first_frequency, "Hz", 5)
      },
      {title: "m", value: ({pattern}) => pattern.m, text: ({pattern}) => String(pattern.m)},
-     {title: "level", value: ({level}) => level, text: ({level}) => (level === null ? "least energy" : short(level, 6))},
+     {
+       title: bar.gap === 0 ? "level (J)" : "level (E/E_g)",
+       value: ({level}) => level,
+       text: ({level}) => (level === null ? "least energy" : short(level, 6))
+     },
      {title: "verdict", value: ({verdict}) => verdict, text: ({verdict}) => (verdict === "admissible" ? "orbit" : verdict)},
      {
        title: "E",
@@ -144,7 +148,8 @@ export class SweepPage {
       "#hertz": (on) => ({hertz: on}),
       "#linear": (on) => ({log: !on}),
     };
-    find("#joules").checked = this.diagram.units.energy;
+    find("#joules").checked = this.diagram.units.energy || report.bar.gap === 0;
+    find("#joules").disabled = report.bar.gap === 0;  // without E_g
     find("#hertz").checked = this.diagram.units.hertz;
     for (const [box, of] of Object.entries(units)) {
       find(box).addEventListener("change", ({target}) => this.diagram.show(of(target.checked)));
@@ -156,12 +161,11 @@ export class SweepPage {
     this.downloads();
     window.addEventListener("hashchange", () => this.follow());
     if (report.orbits.length === 0) {
-      find("#orbit").replaceChildren(document.createTextNode("No orbit was found: the table says why."));
+      find("#orbit-name").textContent = "No orbit was found: the table says why.";
+      find("#orbit").replaceChildren(find("#orbit-name"));
       return;
     }
-    if (!this.follow()) {
-      this.choose(middle(report.orbits));
-    }
+    if (!this.follow()) this.choose(middle(report.orbits), this.find("#message").textContent);
   }
 
   downloads() {
@@ -174,7 +178,7 @@ export class SweepPage {
       "#save-curves": () => savePng(name("-motion", "png"), this.curves.picture()),
       "#save-field": () => savePng(name(`-${this.field.kind}`, "png"), this.field.canvas),
       "#save-svg": () => saveSvg("diagram.svg", this.diagram.plot.svg),
-      "#save-png": () => saveDrawing("diagram.png", this.diagram.plot.svg, themed("--paper")),
+      "#save-png": () => saveDrawing("diagram.png", this.diagram.plot.svg),
     };
     for (const [button, action] of Object.entries(actions)) this.find(button).addEventListener("click", action);
   }
@@ -184,25 +188,28 @@ export class SweepPage {
     const said = new URLSearchParams(location.hash.slice(1));
     if (!said.has("r") || !said.has("p")) return false;
     const [free, contact] = [Number(said.get("r")), Number(said.get("p"))];
-    const level = said.has("E") ? Number(said.get("E")) : null;
+    const energy = said.get("E");
+    const level =
+        energy === null ? null : Number.parseFloat(energy) / (energy.endsWith("J") ? this.report.bar.energy_unit : 1);
     const of = this.report.orbits.filter(({pattern}) => pattern.free === free && pattern.contact === contact);
     const found = of.find((orbit) => orbit.level === level) ??
-        (level === null ? of[0] : of.find(({energy}) => Math.abs(energy / level - 1) < 1e-6));
+        (level === null ? of[0] : of.find((orbit) => Math.abs(orbit.energy / level - 1) < 1e-6));
     if (!found) {
       this.find("#message").textContent =
-          `No orbit of (r = ${free}, p = ${contact})${level === null ? "" : ` at ${level}`} is in this report.`;
+          `No orbit of (r = ${free}, p = ${contact})${energy === null ? "" : ` at ${energy}`} is in this report.`;
       return false;
     }
     if (found !== this.orbit) this.choose(found);
     return true;
   }
 
-  choose(orbit) {
+  /** Shows an orbit; with a message the address stays as it is. */
+  choose(orbit, message = "") {
     const {report, find} = this;
     this.orbit = orbit;
     const {pattern, level} = orbit;
     this.motion = new Motion(report.bar, report.cells, pattern.free, pattern.contact, orbit.get("beta"));
-    find("#message").textContent = "";
+    find("#message").textContent = message;
     find("#orbit-name").textContent = `Orbit (r = ${pattern.free}, p = ${pattern.contact}), ` +
         `${si(pattern.ratio * report.bar.first_frequency, "Hz")}, ${si(orbit.energy * report.bar.energy_unit, "J")}`;
     this.curves.show(this.motion);
@@ -212,7 +219,7 @@ export class SweepPage {
     this.diagram.select(orbit);
     this.table.select(orbit);
     const hash = `#r=${pattern.free}&p=${pattern.contact}${level === null ? "" : `&E=${level}`}`;
-    if (location.hash !== hash) history.replaceState(null, "", hash);
+    if (message === "" && location.hash !== hash) history.replaceState(null, "", hash);
   }
 
   // A cursor over curves or field leads, unless the animation plays.
@@ -229,23 +236,23 @@ export class SweepPage {
     this.marking = false;
   }
 
-  /** Left and right along the branch, up and down to the next frequency. */
+  /** Left and right along the branch, up and down to the next pattern: by frequency, then by steps of flight. */
   key(event) {
-    const {orbits} = this.report;
-    if (!["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"].includes(event.key)) return;
+    if (!this.orbit || !["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"].includes(event.key)) return;
     event.preventDefault();
-    const {pattern, energy} = this.orbit;
+    const {orbit: now, report: {orbits}} = this;
     const sign = event.key === "ArrowRight" || event.key === "ArrowUp" ? 1 : -1;
     const along = event.key === "ArrowLeft" || event.key === "ArrowRight";
-    const measure =
-        along ? (orbit) => sign * (orbit.energy - energy) : (orbit) => sign * (orbit.pattern.ratio - pattern.ratio);
-    const apart = (orbit) => Math.abs(Math.log(orbit.energy / energy));
+    // The place of an orbit among those that the key leads through; its least-energy orbit comes before a level there.
+    const place =
+        along ? ({energy, level}) => [energy, level === null ? 0 : 1] : ({pattern}) => [pattern.ratio, pattern.free];
+    const before = (a, b) => sign * (a[0] - b[0] || a[1] - b[1]) < 0;
+    const apart = ({energy}) => Math.abs(Math.log(energy / now.energy));
     let found = null;
     for (const orbit of orbits) {
-      if ((along && orbit.pattern !== pattern) || measure(orbit) <= 0) continue;
-      if (found === null || measure(orbit) < measure(found) ||
-          (measure(orbit) === measure(found) && apart(orbit) < apart(found)))
-        found = orbit;
+      if ((along && orbit.pattern !== now.pattern) || !before(place(now), place(orbit))) continue;
+      const nearer = found === null || before(place(orbit), place(found));
+      if (nearer || (!before(place(found), place(orbit)) && apart(orbit) < apart(found))) found = orbit;
     }
     if (found !== null) this.choose(found);
   }
@@ -253,6 +260,9 @@ export class SweepPage {
   /** Colours of canvases follow the theme. */
   redraw() {
     this.diagram.plot.draw();
-    if (this.orbit) this.choose(this.orbit);
+    if (!this.orbit) return;
+    this.curves.show(this.motion);
+    this.field.show(this.motion);
+    this.animation.to(this.animation.time);
   }
 }

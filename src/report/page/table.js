@@ -45,13 +45,17 @@ export class Table {
 
   filter(text) {
     this.words = text.toLowerCase().split(/\s+/).filter((word) => word !== "");
+    this.host.scrollTop = 0;
     this.arrange();
   }
 
   arrange() {
-    const texts = (row) => this.columns.map(({text}) => text(row)).join(" ").toLowerCase();
-    this.shown = this.words.length === 0 ? [...this.rows] :
-                                           this.rows.filter((row) => this.words.every((word) => texts(row).includes(word)));
+    const matches = (row) => {
+      const text = this.columns.map((column) => column.text(row)).join(" ").toLowerCase();
+      return this.words.every((word) => text.includes(word));
+    };
+    this.shown = this.words.length === 0 ? [...this.rows] : this.rows.filter(matches);
+    this.table.setAttribute("aria-rowcount", String(this.shown.length + 1));
     const {column, rising} = this.order;
     if (column !== null) {
       const compare = (a, b) => {
@@ -68,7 +72,8 @@ export class Table {
   }
 
   draw(print = false) {
-    const first = print ? 0 : Math.max(0, Math.floor(this.host.scrollTop / rowHeight) - 5);
+    const inSight = Math.min(Math.floor(this.host.scrollTop / rowHeight), this.shown.length - 1);
+    const first = print ? 0 : Math.max(0, inSight - 5);
     const last = Math.min(this.shown.length, print ? printed : first + Math.ceil(this.host.clientHeight / rowHeight) + 12);
     const space = (rows) => element("tr", {"aria-hidden": "true", style: `height:${rows * rowHeight}px`});
     const made = [];
@@ -77,6 +82,7 @@ export class Table {
       made.push(element(
           "tr", {
             role: "row",
+            id: `row-${place}`,
             "data-place": String(place),
             "aria-rowindex": String(place + 2),
             "aria-selected": String(row === this.chosen),
@@ -100,6 +106,7 @@ export class Table {
     this.chosen = row;
     this.place = this.shown.indexOf(row);
     if (this.place >= 0) {
+      this.host.setAttribute("aria-activedescendant", `row-${this.place}`);
       const top = this.place * rowHeight;
       const seen = this.host.clientHeight - 2 * rowHeight;
       if (top < this.host.scrollTop) this.host.scrollTop = top;

@@ -27,11 +27,12 @@ export function scaled(value, unit) {
   return size === 0 ? {factor: 1, unit} : {factor: found[0], unit: found[1] + unit};
 }
 
-/** "98.2 µs". */
-export function si(value, unit, digits = 5) {
+/** "98.2 µs"; what is nothing but rounding beside `scale` is zero. */
+export function si(value, unit, digits = 5, scale = 0) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-  const scale = scaled(value, unit);
-  return `${short(value / scale.factor, digits)} ${scale.unit}`;
+  if (Math.abs(value) <= 1e-12 * scale) return `0 ${unit}`;
+  const shown = scaled(value, unit);
+  return `${short(value / shown.factor, digits)} ${shown.unit}`;
 }
 
 /** Steps as ranges: "3–7, 12". */

@@ -204,9 +204,13 @@ const char* unit_name(Parameter parameter) {
     }
 }
 
+std::pair<double, const char*> objective_unit(Objective objective, const Bar& bar) {
+    if (objective == Objective::least_force) return {bar.force_unit(), "N"};
+    return {bar.energy_unit(), "J"};
+}
+
 double in_si(double derivative, Objective objective, Parameter parameter, const Bar& bar) {
-    const double unit = objective == Objective::least_force ? bar.force_unit() : bar.energy_unit();
-    return derivative * unit / unit_of(parameter, bar);
+    return derivative * objective_unit(objective, bar).first / unit_of(parameter, bar);
 }
 
 double elasticity(double derivative, Parameter parameter, double value, int gap_sign, double level) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "nsma/study/sensitivity/sensitivity.hpp"
@@ -34,8 +35,10 @@ void write_sensitivity(const std::filesystem::path& folder, const Scene& scene, 
 [[nodiscard]] std::string sensitivity_text(const std::string& file, const Scene& scene,
                                            const SensitivityRecords& records);
 
-/// Derivative in SI: objective (J; N for least-force) per metre, newton or joule.
+/// What a nondimensional objective is in SI units, and their name.
+[[nodiscard]] std::pair<double, const char*> objective_unit(Objective objective, const Bar& bar);
 [[nodiscard]] const char* unit_name(Parameter parameter);  ///< "m", "N" or "J"
+/// Derivative in SI: objective (J; N for least-force) per metre, newton or joule.
 [[nodiscard]] double in_si(double derivative, Objective objective, Parameter parameter, const Bar& bar);
 /// Relative change of the value per relative change of gap or energy; of a parameter that is
 /// zero, per |d| or per Y S |d|/L.
