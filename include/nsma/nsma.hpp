@@ -2,6 +2,7 @@
 
 // Every public header, for programs that use the library; the library itself includes what it needs.
 #include "nsma/wave/bar.hpp"
+#include "nsma/wave/damping.hpp"
 #include "nsma/wave/marcher.hpp"
 #include "nsma/wave/mesh.hpp"
 #include "nsma/wave/state.hpp"
@@ -31,6 +32,7 @@
 #include "nsma/search/pattern_problem.hpp"
 #include "nsma/price/relaxed_set.hpp"
 #include "nsma/price/shadow_prices.hpp"
+#include "nsma/study/forcing.hpp"
 #include "nsma/study/records.hpp"
 #include "nsma/study/scan.hpp"
 #include "nsma/study/scene.hpp"

@@ -61,8 +61,8 @@ enum ExitCode {
 /// Each runs one command and returns its exit code. Throw InputError on bad input, and Interrupted where they have
 /// nothing to keep.
 using Run = int(const Arguments& arguments);
-Run run_scan, run_orbit, run_sweep, run_export, run_report, run_accuracy, run_sensitivity, run_plot, run_prove,
-    run_check;
+Run run_scan, run_orbit, run_sweep, run_export, run_report, run_forced, run_accuracy, run_sensitivity, run_plot,
+    run_prove, run_check;
 
 /// The names of `--solver`.
 inline constexpr std::array<std::pair<const char*, SolverChoice>, 4> solver_choices{{{"ipopt", SolverChoice::ipopt},

@@ -274,6 +274,13 @@ std::vector<Entry> commands() {
          "  nsma report out/first-mode\n"
          "  nsma report out/first-mode --out first-mode.html",
          run_report},
+        {"forced",
+         "sweep the frequency of a force on the tip: the response, up and down, over the modes",
+         {scene, bar_and_mesh, out_folder, resume, quiet},
+         "Examples:\n"
+         "  nsma forced problems/forced-first-mode.toml --out out/forced\n"
+         "  nsma forced problems/forced-first-mode.toml --out out/forced --resume",
+         run_forced},
         {"accuracy",
          "speed against accuracy: every method on the same work, and where each fails",
          {scene, out_folder, flag("--quick", &Arguments::quick, "small sizes and few runs: seconds instead of minutes"),

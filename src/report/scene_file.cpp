@@ -20,6 +20,10 @@ namespace nsma {
 namespace {
 
 constexpr long max_levels = 1'000'000;
+constexpr long max_frequencies = 100'000;
+constexpr long max_force_periods = 10'000'000;
+constexpr double least_frequency = 1e-3;  // of omega_1
+constexpr double greatest_frequency = 1e3;
 constexpr int deepest = 16;  // brackets, or parts of a key; those of a scene go two deep
 constexpr const char* positive_number = "a finite number > 0";
 
@@ -261,6 +265,56 @@ void read_levels(const SceneValue& section, Scene& scene) {
     }
 }
 
+// From, to, count: at least two where they differ.
+std::vector<double> read_frequencies(const SceneValue& section, double unit) {
+    const auto number = [&](const char* key) {
+        const SceneValue value = section[key];
+        const double ratio = value.positive() / unit;
+        if (!(ratio >= least_frequency && ratio <= greatest_frequency))
+            value.fail(fmt::format("{:g} to {:g} omega_1", least_frequency, greatest_frequency),
+                       fmt::format("{:g} omega_1", ratio));
+        return ratio;
+    };
+    const double from = number("from");
+    const double to = number("to");
+    const SceneValue count_value = section["count"];
+    const long count = count_value.integer(1, max_frequencies);
+    if (from > to) section["to"].fail("a number >= forcing.from");
+    if ((from == to) != (count == 1))
+        count_value.fail(from == to ? "1, since from = to" : "at least 2, since from < to");
+    return spaced(from, to, count, false);
+}
+
+Forcing read_forcing(const SceneValue& section, const Bar& bar) {
+    Forcing forcing;
+    forcing.amplitude = section["amplitude"].positive();
+    const auto one_of = [&](const char* key, const Keys& words, std::size_t otherwise) {
+        const SceneValue value = section[key];
+        if (value.missing()) return otherwise;
+        const std::string word = value.text(fmt::format("one of {}", fmt::join(words, ", ")));
+        const auto found = std::find(words.begin(), words.end(), word);
+        if (found == words.end()) value.fail(fmt::format("one of {}", fmt::join(words, ", ")));
+        return static_cast<std::size_t>(found - words.begin());
+    };
+    (void)one_of("at", {"tip"}, 0);
+    (void)one_of("shape", {"cosine"}, 0);
+    const bool hertz = one_of("unit", {"omega_1", "Hz"}, 0) == 1;
+    forcing.frequencies = read_frequencies(section, hertz ? 0.25 / bar.travel_time() : 1.0);
+    const std::size_t direction = one_of("direction", {"up", "down", "both"}, 2);
+    forcing.up = direction != 1;
+    forcing.down = direction != 0;
+    forcing.settle = static_cast<int>(section["settle"].integer(0, max_force_periods));
+    forcing.record = static_cast<int>(section["record"].integer(2, max_force_periods));
+    forcing.from_rest = one_of("start", {"last", "rest"}, 0) == 1;
+    return forcing;
+}
+
+Damping read_damping(const SceneValue& section) {
+    const bool distributed = section["kind"].is_second("tip", "distributed");
+    const double value = section["value"].within(1e-12, distributed ? 1e12 : 1e3);
+    return {distributed ? Damping::Kind::distributed : Damping::Kind::tip, value};
+}
+
 Objective read_objective(const SceneValue& value) {
     constexpr const char* names = "\"least-shock\", \"nearest\", \"least-force\", \"min-energy\" or \"max-energy\"";
     const std::optional<Objective> objective = objective_named(value.text(names));
@@ -312,7 +366,7 @@ Scene parse_scene(std::string_view text, const std::string& where) {
                                               shortened(std::string(error.description()), 200), quotes_hint(line))));
     }
     const SceneValue root(source, "", table);
-    root.refuse_all_but({"title", "bar", "mesh", "patterns", "levels", "program"});
+    root.refuse_all_but({"title", "bar", "mesh", "patterns", "levels", "program", "damping", "forcing"});
     Scene scene;
     scene.title = root["title"].text("one line of text");
     scene.bar = read_bar(root);
@@ -323,6 +377,12 @@ Scene parse_scene(std::string_view text, const std::string& where) {
         scene.all_kinds = kinds.is_second("contact", "all");
     read_levels(root.section("levels", {"list", "from", "to", "count", "spacing", "unit"}), scene);
     scene.objective = read_objective(root.section("program", {"objective"})["objective"]);
+    if (!root["damping"].missing()) scene.damping = read_damping(root.section("damping", {"kind", "value"}));
+    if (!root["forcing"].missing()) {
+        scene.forcing = read_forcing(root.section("forcing", {"amplitude", "at", "shape", "from", "to", "count", "unit",
+                                                              "direction", "settle", "record", "start"}),
+                                     scene.bar);
+    }
     scene.text = text;
     return scene;
 }

@@ -28,7 +28,7 @@ DrivenBar::DrivenBar(const Bar& bar, const Mesh& mesh, const State& state, const
 
 DrivenBar::Step DrivenBar::step(double force) {
     Step step;
-    step.loss = damp();
+    if (half_step_ < 1) step.loss = queue_.damp(half_step_);
     const double pressure = force / area_;
     const double wave = queue_.arriving();
     double velocity = (2.0 * wave + pressure / impedance_) / (1.0 + dashpot_);
@@ -43,16 +43,8 @@ DrivenBar::Step DrivenBar::step(double force) {
     step.loss += dashpot_ * impedance_ * area_ * velocity * velocity * time_step_;
     step.landing = step.wall_force * velocity * time_step_;
     queue_.step(velocity);
-    step.loss += damp();
+    if (half_step_ < 1) step.loss += queue_.damp(half_step_);
     return step;
-}
-
-// Over half a step; what it takes [J].
-double DrivenBar::damp() {
-    if (half_step_ == 1.0) return 0.0;
-    const double before = queue_.energy();
-    queue_.damp(half_step_);
-    return before - queue_.energy();
 }
 
 State rest_state(const Bar& bar, const Mesh& mesh) {

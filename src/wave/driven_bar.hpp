@@ -1,19 +1,9 @@
 #pragma once
 
 #include "wave_queue.hpp"
+#include "nsma/wave/damping.hpp"
 
 namespace nsma {
-
-/// What takes energy from the bar.
-struct Damping {
-    enum class Kind {
-        none,
-        tip,         ///< a dashpot at the contact end, `value` times z S: the motion stays exact
-        distributed  ///< in every cell, C = `value` M with `value` in 1/s: of second order in dt, O(N) a step
-    };
-    Kind kind = Kind::none;
-    double value = 0;  ///< >= 0
-};
 
 /// A bar whose contact end is driven by a force and meets the wall: the queue of waves with
 /// `b_{n+2N} = b_n - v*_n`, where the tip has the velocity v* that force, dashpot and the arriving wave give it,
@@ -40,8 +30,6 @@ public:
     [[nodiscard]] const WaveQueue& queue() const { return queue_; }
 
 private:
-    double damp();
-
     WaveQueue queue_;
     double gap_, touch_, time_step_, area_, impedance_;
     double dashpot_ = 0;    // zeta

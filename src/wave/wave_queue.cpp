@@ -45,7 +45,7 @@ void WaveQueue::step(double tip_velocity) {
     advance();
 }
 
-void WaveQueue::damp(double factor) {
+double WaveQueue::damp(double factor) {
     // The two waves of a cell, v = b' - b'' and -sigma/z = b' + b'': the first from the head on, the second behind it.
     const double same = 0.5 * (1.0 + factor);
     const double other = 0.5 * (1.0 - factor);
@@ -53,14 +53,17 @@ void WaveQueue::damp(double factor) {
     std::size_t away = head_ + cells;
     if (away >= waves_.size()) away -= waves_.size();
     std::size_t toward = away;
+    double squares = 0.0;
     for (std::size_t i = 0; i < cells; ++i) {
         toward = toward == 0 ? waves_.size() - 1 : toward - 1;
         const double first = waves_[toward];
         const double second = waves_[away];
+        squares += (first - second) * (first - second);
         waves_[toward] = same * first + other * second;
         waves_[away] = other * first + same * second;
         if (++away == waves_.size()) away = 0;
     }
+    return 0.5 * (1.0 - factor * factor) * bar_.density * bar_.area * mesh_.cell_length(bar_) * squares;
 }
 
 void WaveQueue::advance() {

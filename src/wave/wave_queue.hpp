@@ -31,8 +31,8 @@ public:
     void step_free() { step(2.0 * waves_[head_]); }
     void step_contact() { step(0.0); }
 
-    /// Every velocity times this factor, stresses as they are: O(N).
-    void damp(double factor);
+    /// Every velocity times this factor, stresses as they are: O(N). The energy that takes [J].
+    double damp(double factor);
 
     [[nodiscard]] State state() const;    ///< Q at the present step, size 2N
     [[nodiscard]] double energy() const;  ///< [J], rho S dx times the sum of b^2

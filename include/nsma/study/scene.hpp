@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "nsma/wave/bar.hpp"
+#include "nsma/wave/damping.hpp"
 #include "nsma/wave/mesh.hpp"
 #include "nsma/orbit/pattern_kind.hpp"
 #include "nsma/set/objective.hpp"
+#include "nsma/study/forcing.hpp"
 
 namespace nsma {
 
@@ -40,6 +42,8 @@ struct Scene {
     bool all_kinds = false;                        ///< solve free and stuck patterns as well as contact motions
     std::vector<double> levels;                    ///< energy ratios E/E_g, joules for a closed gap; all > 0
     Objective objective = Objective::least_shock;  ///< of the orbits at the levels
+    Damping damping;                               ///< of `forced` and `march`
+    std::optional<Forcing> forcing;                ///< of `forced`
     std::string text;                              ///< the scene file as read; empty for a scene made in code
 };
 

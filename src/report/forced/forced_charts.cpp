@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "forced_folder.hpp"
+#include "wave/driven_bar.hpp"
+#include "nsma/orbit/backbone.hpp"
+#include "report/bar_text.hpp"
+
+namespace nsma {
+namespace {
+
+bool has_contact(const ForcedPoint& point) { return point.kind != ForcedKind::contact_free; }
+
+// Energy over frequency of the exact mode k between two frequencies.
+std::string mode_rows(int mode, int gap_sign, double lo, double hi, double most) {
+    std::string rows;
+    const PeriodInterval periods = backbone_period_interval(mode, gap_sign);
+    constexpr int pieces = 400;
+    for (int i = 0; i <= pieces; ++i) {
+        const double frequency = lo + (hi - lo) * i / pieces;
+        const double period = 4 / frequency;
+        if (period <= periods.lo || period > periods.hi) continue;
+        const double energy = backbone_energy_ratio(mode, period);
+        if (energy <= most) rows += fmt::format("{} {}\n", frequency, energy);
+    }
+    return rows;
+}
+
+Chart response_chart(const Scene& scene, const std::vector<ForcedPoint>& points) {
+    const bool closed = scene.bar.gap == 0;
+    double least = INFINITY, most = 0;
+    for (const ForcedPoint& point : points) {
+        least = std::min(least, point.energy_max);
+        most = std::max(most, point.energy_max);
+    }
+    const auto [lo, hi] = std::minmax_element(scene.forcing->frequencies.begin(), scene.forcing->frequencies.end());
+    Chart chart{.name = "response",
+                .data = fmt::format("# {}: frequency omega/omega_1, greatest energy {}\n", scene.title,
+                                    closed ? "[J]" : "E/E_g"),
+                .title = scene.title};
+    Panel panel{.frame = Frame{0.11, 0.965, 0.31, 0.92},
+                .x = {"frequency of the force ω/ω_1", range(*lo, *hi)},
+                .y = {closed ? "greatest energy (J)" : "greatest energy E/E_g", range(least / 2, most * 4)},
+                .key = "at screen 0.54, screen 0.175 center top vertical maxrows 4 samplen 3 width 1 font ',12'",
+                .settings = "set logscale y\n"};
+    for (int mode = 1; !closed && mode <= 30; ++mode) {
+        const std::string rows = mode_rows(mode, scene.bar.gap_sign(), *lo, *hi, most * 4);
+        if (rows.empty()) continue;
+        panel.curves.push_back({chart.add(fmt::format("mode-{}", mode), rows) + " using 1:2",
+                                "lines lw 5 lc rgb '#c8c8c8'",
+                                fmt::format("exact mode {}, no force, no damping", mode)});
+    }
+    const struct {
+        bool up, contact;
+        const char *name, *style, *title;
+    } looks[]{{true, true, "up", "linespoints lw 1.5 pt 9 ps 0.9*mark lc rgb '#0072b2'", "up, with contact"},
+              {false, true, "down", "linespoints lw 1.5 pt 10 ps 1.1*mark lc rgb '#d55e00'", "down, with contact"},
+              {true, false, "up-free", "points pt 7 ps 0.4*mark lc rgb '#0072b2'", "up, contact-free"},
+              {false, false, "down-free", "points pt 6 ps 0.7*mark lc rgb '#d55e00'", "down, contact-free"}};
+    for (const auto& look : looks) {
+        std::string rows;
+        for (const ForcedPoint& point : points) {
+            if (point.up != look.up) continue;
+            if (has_contact(point) == look.contact)
+                rows += fmt::format("{} {}\n", point.frequency, point.energy_max);
+            else if (look.contact && !rows.empty() && !rows.ends_with("\n\n"))
+                rows += "\n";  // the line ends
+        }
+        if (rows.find_first_not_of('\n') == std::string::npos) continue;
+        // An empty line within a block parts lines.
+        panel.curves.push_back({chart.add(look.name, rows) + " using 1:2", look.style, look.title});
+    }
+    std::string odd;
+    for (const ForcedPoint& point : points) {
+        if (point.kind == ForcedKind::chaotic || point.kind == ForcedKind::quasi_periodic ||
+            point.kind == ForcedKind::transient)
+            odd += fmt::format("{} {}\n", point.frequency, point.energy_max);
+    }
+    if (!odd.empty())
+        panel.curves.push_back({chart.add("not-periodic", odd) + " using 1:2",
+                                "points pt 4 ps 1.6*mark lc rgb '#000000'", "not periodic"});
+    for (const BalancePoint& jump : predicted_jumps(balance_points(scene))) {
+        panel.settings +=
+            fmt::format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead dt 2 lw 1.5 lc rgb '#333333'\n",
+                        jump.frequency);
+        panel.curves.push_back(
+            {"NaN", "lines dt 2 lw 1.5 lc rgb '#333333'", fmt::format("mode {} ends by energy balance", jump.mode)});
+    }
+    chart.panels = {std::move(panel)};
+    return chart;
+}
+
+// Three points worth looking at: the most energetic with contact, the first with contact sweeping up, and the one that
+// returns least.
+std::vector<const ForcedPoint*> chosen(const std::vector<ForcedPoint>& points) {
+    std::vector<const ForcedPoint*> found;
+    const auto add = [&found](const ForcedPoint* point) {
+        if (point != nullptr && std::find(found.begin(), found.end(), point) == found.end()) found.push_back(point);
+    };
+    const ForcedPoint *first = nullptr, *most = nullptr, *wildest = nullptr;
+    for (const ForcedPoint& point : points) {
+        if (!has_contact(point)) continue;
+        if (first == nullptr) first = &point;
+        if (most == nullptr || point.energy_max > most->energy_max) most = &point;
+        if (wildest == nullptr || point.defect > wildest->defect) wildest = &point;
+    }
+    add(first);
+    add(most);
+    add(wildest);
+    return found;
+}
+
+Chart motions_chart(const Scene& scene, const std::vector<const ForcedPoint*>& points) {
+    Chart chart{.name = "forced-motions",
+                .data = fmt::format("# {}: tip over two periods of the force, and once a period\n", scene.title),
+                .title = scene.title,
+                .height = 260 * static_cast<int>(points.size()) + 60};
+    const Bar& bar = scene.bar;
+    const double rows_height = 0.84 / static_cast<double>(points.size());
+    double largest = std::abs(bar.gap);
+    for (const ForcedPoint* point : points)
+        largest = std::max({largest, std::abs(point->tip_least), std::abs(point->tip_greatest)});
+    const ScaledUnit length = is_unit_bar(bar) ? ScaledUnit{1.0, "d"} : scaled_unit(largest, "m");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const ForcedPoint& point = *points[i];
+        const double period = 4.0 * scene.mesh.cells / point.frequency;
+        State state(scene.mesh.window());
+        for (int k = 1; k <= scene.mesh.cells; ++k) {
+            const double toward = point.waves[static_cast<std::size_t>(scene.mesh.cells - k)];
+            const double away = point.waves[static_cast<std::size_t>(scene.mesh.cells + k - 1)];
+            state[k - 1] = -bar.impedance() * (toward + away);
+            state[scene.mesh.cells + k - 1] = toward - away;
+        }
+        DrivenBar driven(bar, scene.mesh, state, scene.damping);
+        std::string motion, section;
+        for (int n = 0; n <= 2 * period; ++n) {
+            motion += fmt::format("{} {}\n", n / period, driven.tip() * length.factor);
+            (void)driven.step(scene.forcing->amplitude * std::cos(2 * M_PI * (point.phase + (n + 0.5) / period)));
+        }
+        double speed = 0;
+        for (const auto& one : point.section) speed = std::max(speed, std::abs(one[1]));
+        const ScaledUnit velocity = scaled_unit(speed, "m/s");
+        for (const auto& [tip, tip_velocity] : point.section)
+            section += fmt::format("{} {}\n", tip * length.factor, tip_velocity * velocity.factor);
+        const double top = 0.92 - rows_height * static_cast<double>(i);
+        const std::string title =
+            fmt::format("ω/ω_1 = {:.4g}, sweeping {}: {}", point.frequency, point.up ? "up" : "down", name(point.kind));
+        double slowest = INFINITY, fastest = -INFINITY, low = INFINITY, high = -INFINITY;
+        for (const auto& [tip, tip_velocity] : point.section) {
+            low = std::min(low, tip * length.factor);
+            high = std::max(high, tip * length.factor);
+            slowest = std::min(slowest, tip_velocity * velocity.factor);
+            fastest = std::max(fastest, tip_velocity * velocity.factor);
+        }
+        // At least a hundredth of the range: what differs less is a point.
+        const auto axis = [](double from, double to, double least) {
+            const double half = std::max(0.6 * (to - from), 0.5 * least);
+            return std::array{0.5 * (from + to) - half, 0.5 * (from + to) + half};
+        };
+        const auto across = axis(low, high, 0.01 * (point.tip_greatest - point.tip_least) * length.factor);
+        const auto along = axis(slowest, fastest, 0.01 * speed * velocity.factor);
+        const auto ticks = [](const std::array<double, 2>& ends) {
+            return fmt::format("{}", round_below((ends[1] - ends[0]) / 2));
+        };
+        const double margin = 0.08 * std::max((point.tip_greatest - point.tip_least) * length.factor, 1e-9);
+        chart.panels.push_back(
+            {.frame = Frame{0.11, 0.56, top - rows_height + 0.11, top - 0.03},
+             .title = title,
+             .x = {i + 1 == points.size() ? "time, in periods of the force" : "", range(0.0, 2.0)},
+             .y = {fmt::format("tip x ({})", length.unit),
+                   range(point.tip_least * length.factor - margin,
+                         std::max(point.tip_greatest, bar.gap) * length.factor + margin)},
+             .curves = {
+                 {fmt::format("{}", bar.gap * length.factor), "lines dt 2 lw 1.5 lc rgb '#333333'"},
+                 {chart.add(fmt::format("motion-{}", i + 1), motion) + " using 1:2", "lines lw 2 lc rgb '#0072b2'"}}});
+        chart.panels.push_back(
+            {.frame = Frame{0.70, 0.97, top - rows_height + 0.11, top - 0.03},
+             .title = "once a period",
+             .x = {i + 1 == points.size() ? fmt::format("tip x ({})", length.unit) : "", range(across[0], across[1]),
+                   ticks(across)},
+             .y = {fmt::format("velocity ({})", velocity.unit), range(along[0], along[1]), ticks(along)},
+             .curves = {{chart.add(fmt::format("section-{}", i + 1), section) + " using 1:2",
+                         "points pt 7 ps 0.5*mark lc rgb '#d55e00'"}}});
+    }
+    return chart;
+}
+
+}  // namespace
+
+std::vector<Chart> forced_charts(const Scene& scene, const std::vector<ForcedPoint>& points) {
+    std::vector<Chart> charts;
+    if (points.empty()) return charts;
+    charts.push_back(response_chart(scene, points));
+    if (const auto some = chosen(points); !some.empty()) charts.push_back(motions_chart(scene, some));
+    return charts;
+}
+
+}  // namespace nsma
