@@ -29,6 +29,9 @@ struct Arguments {
     bool distinct = false;   ///< one row a motion
     bool certify = false;    ///< exact certificates of every orbit
     bool resume = false;     ///< go on with what an interrupted run left
+    std::string state;       ///< file of a state to march
+    double perturb = 0;      ///< share of its norm by which a start is moved
+    int periods = 100;       ///< to march
     bool quick = false;
     bool curves = false;  ///< the curves of every orbit as well
     bool csv = false;
@@ -61,8 +64,8 @@ enum ExitCode {
 /// Each runs one command and returns its exit code. Throw InputError on bad input, and Interrupted where they have
 /// nothing to keep.
 using Run = int(const Arguments& arguments);
-Run run_scan, run_orbit, run_sweep, run_export, run_report, run_forced, run_accuracy, run_sensitivity, run_plot,
-    run_prove, run_check;
+Run run_scan, run_orbit, run_sweep, run_export, run_report, run_forced, run_march, run_accuracy, run_sensitivity,
+    run_plot, run_prove, run_check;
 
 /// The names of `--solver`.
 inline constexpr std::array<std::pair<const char*, SolverChoice>, 4> solver_choices{{{"ipopt", SolverChoice::ipopt},

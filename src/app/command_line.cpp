@@ -202,6 +202,17 @@ void drawing(CLI::App& command, Arguments& arguments) {
                  "W[xH]"});
 }
 
+// What `march` begins with besides an orbit.
+void start(CLI::App& command, Arguments& arguments) {
+    command.add_option("--state", arguments.state,
+                       "CSV file of a state: stress_pa,velocity_m_s of each cell from the held end on");
+    command.add_option("--perturb", arguments.perturb, "move the start by this share of its energy norm (0 to 1)")
+        ->transform(finite())
+        ->check(CLI::Range(0.0, 1.0));
+    command.add_option("--periods", arguments.periods, "periods to march (default 100; of --state of 4 L/c)")
+        ->transform(whole(1, 10'000'000));
+}
+
 struct Entry {
     const char* name;
     const char* summary;
@@ -281,6 +292,15 @@ std::vector<Entry> commands() {
          "  nsma forced problems/forced-first-mode.toml --out out/forced\n"
          "  nsma forced problems/forced-first-mode.toml --out out/forced --resume",
          run_forced},
+        {"march",
+         "let the bar go from an orbit or any other state, and see what it does",
+         {scene, bar_and_mesh, pattern(false),
+          energy("energy of the orbit, E/E_g or in joules with a J behind it; without it its least energy", true),
+          objective, start},
+         "Examples:\n"
+         "  nsma march problems/first-mode.toml --free 60 --contact 10 --energy 12.6\n"
+         "  nsma march problems/first-mode.toml --free 60 --contact 10 --perturb 1e-3 --periods 1000",
+         run_march},
         {"accuracy",
          "speed against accuracy: every method on the same work, and where each fails",
          {scene, out_folder, flag("--quick", &Arguments::quick, "small sizes and few runs: seconds instead of minutes"),

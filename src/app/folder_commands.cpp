@@ -10,6 +10,7 @@
 #include "nsma/report/scene_file.hpp"
 #include "report/accuracy/accuracy_folder.hpp"
 #include "report/folder_lock.hpp"
+#include "report/forced/forced_folder.hpp"
 #include "report/orbit_folder.hpp"
 #include "report/page/report_page.hpp"
 #include "report/results_folder.hpp"
@@ -31,6 +32,7 @@ struct Contents {
     bool sweep = false;
     bool orbit = false;
     bool accuracy = false;
+    bool forced = false;
     bool sensitivity = false;
 };
 
@@ -42,12 +44,19 @@ Contents contents_of(const fs::path& folder) {
         if (code) fail(folder / file, fmt::format("cannot be read: {}", code.message()));
         return found;
     };
-    Contents contents{folder, holds(store_name) || holds(store_part_name), holds(orbit_json_name),
-                      holds(accuracy_records_name), holds(sensitivity_records_name)};
-    if (contents.sweep || contents.orbit || contents.accuracy || contents.sensitivity) return contents;
-    fail(folder, fmt::format("expected the folder of a sweep, an orbit or a finished study, got one without {}, {}, {} "
-                             "and {}",
-                             store_name, orbit_json_name, accuracy_records_name, sensitivity_records_name));
+    Contents contents{folder,
+                      holds(store_name) || holds(store_part_name),
+                      holds(orbit_json_name),
+                      holds(accuracy_records_name),
+                      holds(forced_records_name),
+                      holds(sensitivity_records_name)};
+    if (contents.sweep || contents.orbit || contents.accuracy || contents.forced || contents.sensitivity)
+        return contents;
+    fail(
+        folder,
+        fmt::format("expected the folder of a sweep, an orbit or a finished study, got one without {}, {}, {}, {} "
+                    "and {}",
+                    store_name, orbit_json_name, accuracy_records_name, forced_records_name, sensitivity_records_name));
 }
 
 // An option that only a sweep's folder has a meaning for.
@@ -71,6 +80,10 @@ std::vector<Chart> charts_in(const Contents& contents) {
         add(charts_of(scene, orbit, "orbit"));
     }
     if (contents.accuracy) add(accuracy_charts(read_accuracy_records(contents.folder)));
+    if (contents.forced) {
+        const Scene scene = scene_of(contents);
+        add(forced_charts(scene, read_forced(contents.folder, scene)));
+    }
     if (contents.sensitivity) {
         Scene scene = scene_of(contents);
         const SensitivityRecords records = read_sensitivity_records(contents.folder, scene);
@@ -90,6 +103,10 @@ int run_export(const Arguments& arguments) {
     std::string line = "results are in " + folder.string();
     if (contents.orbit) write_orbit_curves(folder, read_orbit_folder(folder).orbit);
     if (contents.accuracy) write_accuracy(folder, scene_of(contents), read_accuracy_records(folder));
+    if (contents.forced) {
+        const Scene scene = scene_of(contents);
+        write_forced(folder, scene, read_forced(folder, scene));
+    }
     if (contents.sensitivity) {
         Scene scene = scene_of(contents);
         const SensitivityRecords records = read_sensitivity_records(folder, scene);

@@ -20,7 +20,7 @@ struct Table {
     const char* file;
     const char* description;
 };
-constexpr std::array<Table, 20> known_tables{
+constexpr std::array<Table, 22> known_tables{
     {{"patterns.csv", "patterns, their verdicts and energy intervals"},
      {"levels.csv",
       "one row an answer; level is in units of E_g, in joules for a closed gap, and empty in the row of a pattern's "
@@ -43,6 +43,8 @@ constexpr std::array<Table, 20> known_tables{
      {"stability.csv", "cells of the maps of where methods fail"},
      {"tolerance.csv", "dimension of the kernel that a dense method finds at a tolerance"},
      {"causes.csv", "what went wrong, by method and map"},
+     {"response.csv", "response to a force of swept frequency, one row a frequency and direction"},
+     {"balance.csv", "orbits of the modes: most work of the force over loss to the damping, a period"},
      {"winners.csv", "Pareto fronts of speed and error, by number of amplitudes"}}};
 
 constexpr std::size_t longest_header = 1U << 16U;
