@@ -87,7 +87,7 @@ table() { awk -F, 'NR == 1 { gsub(/_/, " ") } { line = "|"; for (i = 1; i <= NF;
     echo "|---|---|---|---|"
     awk -F, '
         BEGIN {
-            split("sieve 2 scan_integers 2 scan_certified 3 mode_integers 2 mode_certified 2 kernel_exact 1 kernel_dense 3 march_queue 1 march_dense 3 serve 0 whole_orbit 1 certify_orbit 2 check_orbit 2", words, " ")
+            split("sieve 2 scan_integers 2 scan_certified 3 mode_integers 2 mode_certified 2 kernel_exact 1 kernel_dense 3 march_queue 1 march_dense 3 march_tip 1 march_distributed 2 march_cells 2 serve 0 whole_orbit 1 certify_orbit 2 check_orbit 2", words, " ")
             for (i = 1; i in words; i += 2) expected[words[i]] = words[i + 1]
         }
         { gsub(/"/, "", $1) }
@@ -114,6 +114,8 @@ What is measured, and what to read in it:
   certificate, written and checked in n_T steps; `mode_integers`, `mode_certified`: of the N - 1 patterns of the first mode.
 - `kernel_exact` against `kernel_dense` (singular values), `march_queue` against `march_dense` (matrix times vector), one
   period each. Small kernels are dominated by their allocations, so the exponent is below 1.
+- `march_tip`, `march_distributed`: the same period under a force, with a dashpot at the tip and with damped cells, against
+  `march_cells`, the literal cell update without either.
 - `solve_ipopt`, `solve_nlopt` (SLSQP): one call from one start on the first-mode pattern (5m/2, 6m, 2m).
 - `whole_orbit`: the same patterns at 1.3 E_min, from the four integers to the replayed orbit, with the exact proof of the
   interval and the closed form of the optimum.

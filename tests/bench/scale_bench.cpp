@@ -15,6 +15,7 @@
 #include "../support/sieve_all.hpp"
 #include "nsma/wave/marcher.hpp"
 #include "wave/dense_wfem.hpp"
+#include "wave/driven_bar.hpp"
 #include "nsma/orbit/sieve.hpp"
 #include "numerics/freed_memory.hpp"
 #include "numerics/solver.hpp"
@@ -111,6 +112,33 @@ void march_queue(benchmark::State& state) {
     }
 }
 BENCHMARK(march_queue)->Arg(24)->Arg(48)->Arg(96)->Arg(192)->Unit(benchmark::kMicrosecond);
+
+// The same steps of a bar under a force, with a dashpot and with damped cells; and of the literal cell update, without.
+void march_driven(benchmark::State& state, Damping::Kind kind) {
+    const int cells = static_cast<int>(state.range(0));
+    const Orbit orbit = some_orbit(cells);
+    DrivenBar bar(orbit.bar, Mesh{cells}, initial_state(orbit), {kind, 0.01});
+    for (auto _ : state) {
+        for (int n = 0; n < orbit.kernel.pattern.period_steps(); ++n)
+            benchmark::DoNotOptimize(bar.step(n % 2 == 0 ? 0.01 : -0.01).tip_velocity);
+    }
+}
+void march_tip(benchmark::State& state) { march_driven(state, Damping::Kind::tip); }
+void march_distributed(benchmark::State& state) { march_driven(state, Damping::Kind::distributed); }
+void march_cells(benchmark::State& state) {
+    const int cells = static_cast<int>(state.range(0));
+    const Orbit orbit = some_orbit(cells);
+    const Pattern& pattern = orbit.kernel.pattern;
+    State now = initial_state(orbit);
+    for (auto _ : state) {
+        for (int n = 0; n < pattern.period_steps(); ++n)
+            dense::cell_step(orbit.bar, Mesh{cells}, n >= pattern.free_steps, now);
+        benchmark::DoNotOptimize(now.data());
+    }
+}
+BENCHMARK(march_tip)->Arg(24)->Arg(48)->Arg(96)->Arg(192)->Unit(benchmark::kMicrosecond);
+BENCHMARK(march_distributed)->Arg(24)->Arg(48)->Arg(96)->Arg(192)->Unit(benchmark::kMicrosecond);
+BENCHMARK(march_cells)->Arg(24)->Arg(48)->Arg(96)->Arg(192)->Unit(benchmark::kMicrosecond);
 
 void march_dense(benchmark::State& state) {
     const int cells = static_cast<int>(state.range(0));
