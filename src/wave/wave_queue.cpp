@@ -74,16 +74,9 @@ void WaveQueue::advance() {
 }
 
 State WaveQueue::state() const {
-    const int cells = mesh_.cells;
-    const double z = bar_.impedance();
-    State state(mesh_.window());
-    for (int i = 1; i <= cells; ++i) {
-        const double toward = wave(cells - i);    // travels to the contact end
-        const double away = wave(cells + i - 1);  // returns from the fixed end
-        state[i - 1] = -z * (toward + away);
-        state[cells + i - 1] = toward - away;
-    }
-    return state;
+    std::vector<double> waves(waves_.size());
+    for (int k = 0; k < window(); ++k) waves[static_cast<std::size_t>(k)] = wave(k);
+    return state_of_waves(bar_, waves);
 }
 
 double WaveQueue::energy() const {
@@ -100,6 +93,19 @@ double WaveQueue::wave(int k) const {
     }
     const std::size_t position = head_ + static_cast<std::size_t>(k);
     return waves_[position < waves_.size() ? position : position - waves_.size()];
+}
+
+State state_of_waves(const Bar& bar, const std::vector<double>& waves) {
+    const auto cells = static_cast<int>(waves.size() / 2);
+    const double z = bar.impedance();
+    State state(2 * cells);
+    for (int i = 1; i <= cells; ++i) {
+        const double toward = waves[static_cast<std::size_t>(cells - i)];
+        const double away = waves[static_cast<std::size_t>(cells + i - 1)];
+        state[i - 1] = -z * (toward + away);
+        state[cells + i - 1] = toward - away;
+    }
+    return state;
 }
 
 }  // namespace nsma

@@ -52,4 +52,7 @@ private:
     double force_per_wave_ = 0.0;  // -2 z S
 };
 
+/// The state whose waves b_0..b_{2N-1} [m/s] these are, the next to arrive first.
+[[nodiscard]] State state_of_waves(const Bar& bar, const std::vector<double>& waves);
+
 }  // namespace nsma

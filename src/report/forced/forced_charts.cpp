@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,8 @@
 #include "wave/driven_bar.hpp"
 #include "nsma/orbit/backbone.hpp"
 #include "report/bar_text.hpp"
+#include "report/field_chart.hpp"
+#include "report/one_line.hpp"
 
 namespace nsma {
 namespace {
@@ -113,6 +116,88 @@ std::vector<const ForcedPoint*> chosen(const std::vector<ForcedPoint>& points) {
     return found;
 }
 
+// The bar at the end of a point, and the force on it in the steps that follow.
+DrivenBar bar_at(const Scene& scene, const ForcedPoint& point) {
+    return {scene.bar, scene.mesh, state_of_waves(scene.bar, point.waves), scene.damping};
+}
+double force_at(const Scene& scene, const ForcedPoint& point, int step) {
+    const double period = 4.0 * scene.mesh.cells / point.frequency;
+    return scene.forcing->amplitude * std::cos(2 * std::numbers::pi * (point.phase + (step + 0.5) / period));
+}
+
+std::string point_text(const ForcedPoint& point) {
+    return fmt::format("ω/ω₁ = {:.4g}, sweeping {}: {}", point.frequency, point.up ? "up" : "down", name(point.kind));
+}
+
+// Over one period of the force from the beginning of a flight or, where it never leaves the wall or touches it, from
+// now.
+Chart fields_chart(const Scene& scene, const ForcedPoint& point) {
+    constexpr int most_samples = 400;
+    const double period = 4.0 * scene.mesh.cells / point.frequency;
+    const auto steps = static_cast<int>(std::ceil(period));
+    DrivenBar driven = bar_at(scene, point);
+    int begin = 0;
+    for (bool before = false; begin < steps; ++begin) {
+        DrivenBar ahead = driven;
+        const bool presses = ahead.step(force_at(scene, point, begin)).wall_force < 0;
+        if (before && !presses) break;
+        before = presses;
+        driven = std::move(ahead);
+    }
+    const int every_step = (steps + most_samples - 1) / most_samples;
+    const int every_cell = (scene.mesh.cells + most_samples - 1) / most_samples;
+    const double time_step = scene.mesh.time_step(scene.bar);
+    const int rows = (steps + every_step - 1) / every_step;
+    const int columns = (scene.mesh.cells + every_cell - 1) / every_cell;
+    FieldSamples fields{
+        Eigen::MatrixXd(rows, columns), Eigen::MatrixXd(rows, columns), rows * every_step * time_step, {}};
+    bool contact = false;
+    for (int n = 0; n < steps; ++n) {
+        if (n % every_step == 0) {
+            const State now = driven.queue().state();
+            for (int column = 0; column < columns; ++column) {
+                fields.stress(n / every_step, column) = now[column * every_cell];
+                fields.velocity(n / every_step, column) = now[scene.mesh.cells + column * every_cell];
+            }
+        }
+        const bool presses = driven.step(force_at(scene, point, begin + n)).wall_force < 0;
+        if (presses && !contact) fields.contacts.push_back({n * time_step, n * time_step});
+        if (presses) fields.contacts.back()[1] = (n + 1) * time_step;
+        contact = presses;
+    }
+    return field_chart(scene.bar, fields, "forced-fields", scene.title,
+                       fmt::format("{}: {}", shortened(scene.title, 60), point_text(point)));
+}
+
+// The force that holds a mode against the damping, over its frequency: where it is the force itself, the response ends.
+Chart balance_chart(const Scene& scene, const std::vector<BalancePoint>& points) {
+    const auto [lo, hi] = std::minmax_element(scene.forcing->frequencies.begin(), scene.forcing->frequencies.end());
+    const double force = scene.forcing->amplitude;
+    const ScaledUnit unit = scaled_unit(force, "N");
+    Chart chart{.name = "balance",
+                .data = fmt::format("# {}: frequency omega/omega_1, force [{}]\n", scene.title, unit.unit),
+                .title = scene.title};
+    Panel panel{.frame = Frame{0.11, 0.965, 0.27, 0.92},
+                .x = {"frequency ω/ω_1", range(*lo, *hi)},
+                .y = {fmt::format("force that holds the mode ({})", unit.unit)},
+                .key = "at screen 0.54, screen 0.13 center top vertical maxrows 2 samplen 3 width 1 font ',12'",
+                .settings = "set logscale y\n"};
+    std::size_t place = 0;
+    for (const int mode : distinct(points, [](const BalancePoint& point) { return point.mode; })) {
+        std::string rows;
+        for (const BalancePoint& point : points) {
+            if (point.mode == mode) rows += fmt::format("{} {}\n", point.frequency, force / point.ratio * unit.factor);
+        }
+        panel.curves.push_back({chart.add(fmt::format("mode-{}", mode), rows) + " using 1:2",
+                                marked_line(curve_styles.at(place++ % curve_styles.size()), 0.6),
+                                fmt::format("mode {}", mode)});
+    }
+    panel.curves.push_back(
+        {fmt::format("{}", force * unit.factor), "lines dt 2 lw 1.5 lc rgb '#333333'", "force of the scene"});
+    chart.panels = {std::move(panel)};
+    return chart;
+}
+
 Chart motions_chart(const Scene& scene, const std::vector<const ForcedPoint*>& points) {
     Chart chart{.name = "forced-motions",
                 .data = fmt::format("# {}: tip over two periods of the force, and once a period\n", scene.title),
@@ -127,18 +212,11 @@ Chart motions_chart(const Scene& scene, const std::vector<const ForcedPoint*>& p
     for (std::size_t i = 0; i < points.size(); ++i) {
         const ForcedPoint& point = *points[i];
         const double period = 4.0 * scene.mesh.cells / point.frequency;
-        State state(scene.mesh.window());
-        for (int k = 1; k <= scene.mesh.cells; ++k) {
-            const double toward = point.waves[static_cast<std::size_t>(scene.mesh.cells - k)];
-            const double away = point.waves[static_cast<std::size_t>(scene.mesh.cells + k - 1)];
-            state[k - 1] = -bar.impedance() * (toward + away);
-            state[scene.mesh.cells + k - 1] = toward - away;
-        }
-        DrivenBar driven(bar, scene.mesh, state, scene.damping);
+        DrivenBar driven = bar_at(scene, point);
         std::string motion, section;
         for (int n = 0; n <= 2 * period; ++n) {
             motion += fmt::format("{} {}\n", n / period, driven.tip() * length.factor);
-            (void)driven.step(scene.forcing->amplitude * std::cos(2 * M_PI * (point.phase + (n + 0.5) / period)));
+            (void)driven.step(force_at(scene, point, n));
         }
         double speed = 0;
         for (const auto& one : point.section) speed = std::max(speed, std::abs(one[1]));
@@ -194,7 +272,12 @@ std::vector<Chart> forced_charts(const Scene& scene, const std::vector<ForcedPoi
     std::vector<Chart> charts;
     if (points.empty()) return charts;
     charts.push_back(response_chart(scene, points));
-    if (const auto some = chosen(points); !some.empty()) charts.push_back(motions_chart(scene, some));
+    const auto balance = balance_points(scene);
+    if (!balance.empty() && scene.damping.kind != Damping::Kind::none) charts.push_back(balance_chart(scene, balance));
+    if (const auto some = chosen(points); !some.empty()) {
+        charts.push_back(motions_chart(scene, some));
+        charts.push_back(fields_chart(scene, *some.at(some.size() > 1 ? 1 : 0)));
+    }
     return charts;
 }
 

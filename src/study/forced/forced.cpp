@@ -70,18 +70,6 @@ double distance(const WaveQueue& a, const WaveQueue& b) {
     return std::sqrt(sum);
 }
 
-State state_of(const Bar& bar, const std::vector<double>& waves) {
-    const auto cells = static_cast<int>(waves.size() / 2);
-    State state(2 * cells);
-    for (int i = 1; i <= cells; ++i) {
-        const double toward = waves[static_cast<std::size_t>(cells - i)];
-        const double away = waves[static_cast<std::size_t>(cells + i - 1)];
-        state[i - 1] = -bar.impedance() * (toward + away);
-        state[cells + i - 1] = toward - away;
-    }
-    return state;
-}
-
 // The tip at any time in steps, which is straight between two of them.
 double tip_at(const std::vector<double>& tips, double when) {
     const auto step = std::min(static_cast<std::size_t>(when), tips.size() - 2);
@@ -333,7 +321,7 @@ std::vector<ForcedPoint> forced_response(const Scene& scene, const std::vector<F
                         return one.up == point.up && one.place == point.place;
                     });
                     point = old != known.end() ? *old : Point(scene, point.place, point.up).run(state, phase);
-                    state = state_of(scene.bar, point.waves);
+                    state = state_of_waves(scene.bar, point.waves);
                     phase = point.phase;
                     if (old != known.end()) continue;
                     const std::lock_guard lock(mutex);
