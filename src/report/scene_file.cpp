@@ -22,6 +22,8 @@ namespace {
 constexpr long max_levels = 1'000'000;
 constexpr long max_frequencies = 100'000;
 constexpr long max_force_periods = 10'000'000;
+constexpr double max_recorded_steps = 1e8;
+constexpr double max_kept_numbers = 1e8;
 constexpr double least_frequency = 1e-3;  // of omega_1
 constexpr double greatest_frequency = 1e3;
 constexpr int deepest = 16;  // brackets, or parts of a key; those of a scene go two deep
@@ -285,7 +287,7 @@ std::vector<double> read_frequencies(const SceneValue& section, double unit) {
     return spaced(from, to, count, false);
 }
 
-Forcing read_forcing(const SceneValue& section, const Bar& bar) {
+Forcing read_forcing(const SceneValue& section, const Bar& bar, int cells) {
     Forcing forcing;
     forcing.amplitude = section["amplitude"].positive();
     const auto one_of = [&](const char* key, const Keys& words, std::size_t otherwise) {
@@ -306,6 +308,17 @@ Forcing read_forcing(const SceneValue& section, const Bar& bar) {
     forcing.settle = static_cast<int>(section["settle"].integer(0, max_force_periods));
     forcing.record = static_cast<int>(section["record"].integer(2, max_force_periods));
     forcing.from_rest = one_of("start", {"last", "rest"}, 0) == 1;
+    // What memory holds: the tip over a record, and each point's section and waves.
+    const double longest = 4.0 * cells / forcing.frequencies.front();
+    if (forcing.record * longest > max_recorded_steps) {
+        section["record"].fail(
+            fmt::format("at most {:.0f} periods, which have {:g} steps", max_recorded_steps / longest, longest));
+    }
+    const double numbers = 2.0 * static_cast<double>(forcing.frequencies.size()) * (2.0 * cells + 2.0 * forcing.record);
+    if (numbers > max_kept_numbers) {
+        section["count"].fail(fmt::format("at most {:.0f} frequencies of so many cells and recorded periods",
+                                          max_kept_numbers / (4.0 * cells + 4.0 * forcing.record)));
+    }
     return forcing;
 }
 
@@ -381,7 +394,7 @@ Scene parse_scene(std::string_view text, const std::string& where) {
     if (!root["forcing"].missing()) {
         scene.forcing = read_forcing(root.section("forcing", {"amplitude", "at", "shape", "from", "to", "count", "unit",
                                                               "direction", "settle", "record", "start"}),
-                                     scene.bar);
+                                     scene.bar, scene.mesh.cells);
     }
     scene.text = text;
     return scene;

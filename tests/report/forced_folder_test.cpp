@@ -126,6 +126,10 @@ TEST(ForcingOfAScene, IsRefusedInOneLine) {
     refused("count = 4", "count = 4\nat = \"middle\"", "forcing.at: expected one of tip, got \"middle\"");
     refused("count = 4", "count = 4\nunit = \"rad/s\"", "forcing.unit: expected one of omega_1, Hz");
     refused("count = 4", "count = 4\ndirections = \"up\"", "did you mean direction?");
+    refused("record = 10", "record = 10000000", "forcing.record: expected at most");
+    refused("count = 4", "count = 100000\nstart = \"rest\"", "no error");
+    refused("count = 4\nsettle = 20\nrecord = 10", "count = 100000\nsettle = 20\nrecord = 1000",
+            "forcing.count: expected at most 24510 frequencies");
     refused("record = 10", "record = 1", "forcing.record: expected an integer from 2");
     refused("kind = \"tip\"", "kind = \"none\"", "damping.kind: expected \"tip\" or \"distributed\"");
     refused("value = 0.02", "value = 0", "damping.value: expected");

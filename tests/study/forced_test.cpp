@@ -134,6 +134,9 @@ TEST(Forced, EachRunIsTheSameAndGoesOnWhereItStopped) {
     const auto rest = response(scene);
     for (const double frequency : scene.forcing->frequencies)
         EXPECT_EQ(at(rest, true, frequency).waves, at(rest, false, frequency).waves);
+    // What comes of a point that cannot be kept comes out, from whatever thread.
+    EXPECT_THROW((void)forced_response(scene, {}, [](const ForcedPoint&) { throw std::domain_error("full"); }),
+                 std::domain_error);
     scene.forcing.reset();
     EXPECT_THROW((void)response(scene), std::invalid_argument);
 }

@@ -73,7 +73,7 @@ struct Jump {
 /// Sweeps the frequency of the force up and down. Sweeps, and of points from rest all points, are independent: they are
 /// done by so many threads as the machine has, and come in the order up, down. `known`: points of an earlier run, with
 /// which each sweep goes on. `done` is told each point, by one thread at a time. Ends early when a stop was asked.
-/// Throws std::invalid_argument where the scene has no forcing.
+/// Throws std::invalid_argument where the scene has no forcing, and what `done` throws.
 [[nodiscard]] std::vector<ForcedPoint> forced_response(const Scene& scene, const std::vector<ForcedPoint>& known,
                                                        const std::function<void(const ForcedPoint&)>& done);
 

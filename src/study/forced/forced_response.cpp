@@ -4,16 +4,14 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <exception>
 #include <mutex>
 #include <numbers>
 #include <stdexcept>
 #include <thread>
 
 #include "wave/driven_bar.hpp"
-#include "nsma/orbit/backbone.hpp"
-#include "nsma/orbit/orbit.hpp"
 #include "nsma/numerics/interruption.hpp"
-#include "nsma/search/pattern_problem.hpp"
 
 namespace nsma {
 namespace {
@@ -196,67 +194,12 @@ private:
     double period_ = 0;
 };
 
-// Of an orbit over a period, at an angular frequency of once a period: the work of F cos at its best phase, and the
-// loss.
-std::array<double, 2> work_and_loss(const Orbit& orbit, const Scene& scene) {
-    const Pattern& pattern = orbit.kernel.pattern;
-    const Eigen::VectorXd tip = tip_displacement(orbit);
-    const double step = orbit.mesh().time_step(orbit.bar);
-    std::complex<double> harmonic = 0;
-    double squares = 0;
-    for (int n = 0; n < pattern.period_steps(); ++n) {
-        const double moved = tip[n + 1] - tip[n];
-        harmonic += moved * std::polar(1.0, 2 * pi * (n + 0.5) / pattern.period_steps());
-        squares += moved * moved / step;
-    }
-    const double work = scene.forcing->amplitude * std::abs(harmonic);
-    if (scene.damping.kind == Damping::Kind::tip)
-        return {work, scene.damping.value * orbit.bar.impedance() * orbit.bar.area * squares};
-    if (scene.damping.kind == Damping::Kind::none) return {work, 0.0};
-    const double cell = orbit.mesh().cell_length(orbit.bar);
-    const double kinetic = 0.5 * orbit.bar.density * orbit.bar.area * cell * field(orbit).velocity.squaredNorm();
-    return {work, 2 * scene.damping.value * kinetic * step};
-}
-
 }  // namespace
 
 std::string_view name(ForcedKind kind) {
     constexpr std::array<std::string_view, 6> names{"contact-free",   "periodic", "nearly-periodic",
                                                     "quasi-periodic", "chaotic",  "transient"};
     return names.at(static_cast<std::size_t>(kind));
-}
-
-std::vector<BalancePoint> balance_points(const Scene& scene) {
-    std::vector<BalancePoint> points;
-    const auto& [lo, hi] = std::minmax_element(scene.forcing->frequencies.begin(), scene.forcing->frequencies.end());
-    constexpr int most_modes = 30;
-    for (int mode = 1; mode <= most_modes && scene.bar.gap != 0; ++mode) {
-        std::vector<Pattern> patterns = mode_patterns(mode, scene.mesh.cells, scene.bar.gap_sign());
-        std::reverse(patterns.begin(), patterns.end());  // frequencies rise
-        for (const Pattern& pattern : patterns) {
-            stop_point();
-            if (pattern.frequency_ratio() < *lo || pattern.frequency_ratio() > *hi) continue;
-            const PatternProblem problem = pattern_problem(pattern, scene.bar.gap_sign(), {.prove = false});
-            if (problem.verdict != Verdict::admissible) continue;
-            const Orbit orbit = make_orbit(scene.bar, problem.kernel, problem.set.reduction.beta(problem.set.least));
-            const auto [work, loss] = work_and_loss(orbit, scene);
-            points.push_back({mode, pattern.frequency_ratio(), energy_ratio(orbit), loss > 0 ? work / loss : INFINITY});
-        }
-    }
-    return points;
-}
-
-std::vector<BalancePoint> predicted_jumps(const std::vector<BalancePoint>& points) {
-    std::vector<BalancePoint> found;
-    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        const BalancePoint& a = points[i];
-        const BalancePoint& b = points[i + 1];
-        if (a.mode != b.mode || !(a.ratio >= 1) || b.ratio >= 1) continue;
-        const double part = std::log(a.ratio) / std::log(a.ratio / b.ratio);
-        found.push_back({a.mode, a.frequency + part * (b.frequency - a.frequency),
-                         a.energy * std::pow(b.energy / a.energy, part), 1.0});
-    }
-    return found;
 }
 
 std::vector<Jump> jumps(const std::vector<ForcedPoint>& points) {
@@ -305,12 +248,13 @@ std::vector<ForcedPoint> forced_response(const Scene& scene, const std::vector<F
     }
     std::mutex mutex;
     std::size_t next = 0;
+    std::exception_ptr failure;  // the first that a thread met
     const auto work = [&] {
         for (;;) {
             std::vector<ForcedPoint>* strand = nullptr;
             {
                 const std::lock_guard lock(mutex);
-                if (next == strands.size() || stop_requested()) return;
+                if (next == strands.size() || failure || stop_requested()) return;
                 strand = &strands[next++];
             }
             State state = rest_state(scene.bar, scene.mesh);
@@ -329,6 +273,10 @@ std::vector<ForcedPoint> forced_response(const Scene& scene, const std::vector<F
                 }
             } catch (const Interrupted&) {
                 return;
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                if (!failure) failure = std::current_exception();
+                return;
             }
         }
     };
@@ -338,6 +286,7 @@ std::vector<ForcedPoint> forced_response(const Scene& scene, const std::vector<F
         for (unsigned i = 1; i < std::min<std::size_t>(count, strands.size()); ++i) threads.emplace_back(work);
         work();
     }
+    if (failure) std::rethrow_exception(failure);
     std::vector<ForcedPoint> points;
     for (const auto& strand : strands) {
         for (const ForcedPoint& point : strand) {
