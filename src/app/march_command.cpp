@@ -54,8 +54,13 @@ int run_march(const Arguments& arguments) {
                             : Start{read_state(arguments.state, scene.mesh), 4 * scene.mesh.cells, arguments.state};
     const State state = arguments.perturb > 0 ? perturbed(scene.bar, start.state, arguments.perturb) : start.state;
     const double periods = arguments.periods;
-    const FreeMarch march =
-        free_march(scene.bar, scene.mesh, state, scene.damping, static_cast<long>(periods) * start.period_steps);
+    FreeMarch march;
+    try {
+        march =
+            free_march(scene.bar, scene.mesh, state, scene.damping, static_cast<long>(periods) * start.period_steps);
+    } catch (const std::invalid_argument& error) {
+        throw InputError(fmt::format("{}: {}", start.name, error.what()));
+    }
     fmt::print("{}\nstart         {}{}\n", derived_text(scene), start.name,
                arguments.perturb > 0 ? fmt::format(", moved by {:g} of its norm", arguments.perturb) : "");
     fmt::print("marched       {} periods of {} steps, {}\n", periods, start.period_steps,

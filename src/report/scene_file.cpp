@@ -289,7 +289,7 @@ std::vector<double> read_frequencies(const SceneValue& section, double unit) {
 
 Forcing read_forcing(const SceneValue& section, const Bar& bar, int cells) {
     Forcing forcing;
-    forcing.amplitude = section["amplitude"].positive();
+    forcing.amplitude = section["amplitude"].within(1e-9 * bar.force_unit(), 1e9 * bar.force_unit());
     const auto one_of = [&](const char* key, const Keys& words, std::size_t otherwise) {
         const SceneValue value = section[key];
         if (value.missing()) return otherwise;
@@ -302,6 +302,10 @@ Forcing read_forcing(const SceneValue& section, const Bar& bar, int cells) {
     (void)one_of("shape", {"cosine"}, 0);
     const bool hertz = one_of("unit", {"omega_1", "Hz"}, 0) == 1;
     forcing.frequencies = read_frequencies(section, hertz ? 0.25 / bar.travel_time() : 1.0);
+    if (forcing.frequencies.back() > 0.5 * cells) {
+        section["to"].fail(fmt::format("at most {:g} omega_1 on {} cells: a period needs 8 steps", 0.5 * cells, cells),
+                           fmt::format("{:g} omega_1", forcing.frequencies.back()));
+    }
     const std::size_t direction = one_of("direction", {"up", "down", "both"}, 2);
     forcing.up = direction != 1;
     forcing.down = direction != 0;

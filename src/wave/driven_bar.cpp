@@ -10,18 +10,24 @@ namespace {
 
 // In displacement units: this near the tip is at the wall. Far below every displacement, far above their rounding.
 constexpr double touch_tolerance = 1e-11;
+// A start this far inside the wall is at it, by rounding.
+constexpr double rest_tolerance = 1e-9;
 
 }  // namespace
 
 DrivenBar::DrivenBar(const Bar& bar, const Mesh& mesh, const State& state, const Damping& damping)
     : queue_(bar, mesh, state),
       gap_(bar.gap),
-      touch_(touch_tolerance * bar.displacement_unit()),
+      touch_(bar.gap == 0 ? 0.0 : touch_tolerance * bar.displacement_unit()),
       time_step_(mesh.time_step(bar)),
       area_(bar.area),
       impedance_(bar.impedance()) {
     if (!std::isfinite(damping.value) || damping.value < 0)
         throw std::invalid_argument(fmt::format("damping: expected a finite number >= 0, got {}", damping.value));
+    const double beyond = queue_.tip() - gap_;
+    if (beyond > rest_tolerance * bar.displacement_unit())
+        throw std::invalid_argument(
+            fmt::format("state: expected a tip that is not inside the wall, got one {:g} m beyond it", beyond));
     if (damping.kind == Damping::Kind::tip) dashpot_ = damping.value;
     if (damping.kind == Damping::Kind::distributed) half_step_ = std::exp(-0.5 * damping.value * time_step_);
 }

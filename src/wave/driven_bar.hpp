@@ -11,7 +11,8 @@ namespace nsma {
 /// while it is pressed. Forces are constant over a step; then all but distributed damping is exact.
 class DrivenBar {
 public:
-    /// Throws std::invalid_argument on a bad bar, mesh or state, or a damping that is negative or not finite.
+    /// Throws std::invalid_argument on a bad bar, mesh or state, a tip inside the wall, or a damping that is negative
+    /// or not finite.
     DrivenBar(const Bar& bar, const Mesh& mesh, const State& state, const Damping& damping);
 
     /// What a step did. Energies [J]; the energy of the bar grows by work - loss + landing.

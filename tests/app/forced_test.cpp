@@ -98,6 +98,10 @@ TEST_F(Forced, AnOrbitThatIsLetGoKeepsItsPattern) {
     const Result given = run({"march", scene_, "--state", write("state.csv", state)});
     EXPECT_TRUE(given.exit_code == 0 || given.exit_code == 3) << given.err;
     EXPECT_NE(given.out.find("marched       100 periods of 24 steps"), std::string::npos) << given.out;
+    std::string inside = "stress_pa,velocity_m_s\n";
+    for (int i = 0; i < 6; ++i) inside += "2,0\n";
+    expect_refused({"march", scene_, "--state", write("inside.csv", inside)},
+                   "expected a tip that is not inside the wall, got one 1 m beyond it");
     expect_refused({"march", scene_}, "expected either --state or --free and --contact, got neither");
     expect_refused({"march", scene_, "--state", path("none.csv")}, "none.csv");
     expect_refused({"march", scene_, "--free", "16", "--contact", "4", "--energy", "1e5"},

@@ -90,6 +90,9 @@ TEST_F(ForcedFolderTest, WhatIsDamagedIsRefused) {
     const auto waves = fewer.find("\"waves\":[") + 9;
     fewer.erase(waves, fewer.find(',', waves) + 1 - waves);
     expect_damaged(fewer);
+    std::string kind = whole;
+    kind.replace(kind.find("\"kind\":\"") + 8, 3, "foo");
+    expect_damaged(kind);
 }
 
 TEST(ForcingOfAScene, IsReadInEitherUnit) {
@@ -117,11 +120,14 @@ TEST(ForcingOfAScene, IsRefusedInOneLine) {
         text.replace(text.find(from), from.size(), to);
         EXPECT_THAT(error_of([&] { (void)parse_scene(text, "test"); }), HasSubstr(said)) << to;
     };
-    refused("amplitude = 0.05", "amplitude = -1", "forcing.amplitude: expected a finite number > 0");
+    refused("amplitude = 0.05", "amplitude = -1", "forcing.amplitude: expected");
     refused("amplitude = 0.05\n", "",
             "forcing.amplitude: expected a finite number > 0, got nothing: the key is missing");
     refused("to = 1.08", "to = 0.5", "forcing.to: expected a number >= forcing.from");
     refused("to = 1.08", "to = 1e9", "forcing.to: expected 0.001 to 1000 omega_1");
+    refused("to = 1.08", "to = 11",
+            "forcing.to: expected at most 10 omega_1 on 20 cells: a period needs 8 steps, got 11 omega_1");
+    refused("amplitude = 0.05", "amplitude = 1e200", "forcing.amplitude: expected a number from 1e-09 to 1e+09");
     refused("count = 4", "count = 1", "forcing.count: expected at least 2, since from < to");
     refused("count = 4", "count = 4\nat = \"middle\"", "forcing.at: expected one of tip, got \"middle\"");
     refused("count = 4", "count = 4\nunit = \"rad/s\"", "forcing.unit: expected one of omega_1, Hz");
@@ -133,6 +139,27 @@ TEST(ForcingOfAScene, IsRefusedInOneLine) {
     refused("record = 10", "record = 1", "forcing.record: expected an integer from 2");
     refused("kind = \"tip\"", "kind = \"none\"", "damping.kind: expected \"tip\" or \"distributed\"");
     refused("value = 0.02", "value = 0", "damping.value: expected");
+}
+
+// One frequency alone, a bar that never leaves the wall, one that is never driven to it: each chart has something to
+// show.
+TEST_F(ForcedFolderTest, EveryChartCanBeDrawn) {
+    const auto draw = [&](const std::string& from, const std::string& to, double gap) {
+        std::string text = scene_text(forcing);
+        text.replace(text.find(from), from.size(), to);
+        Scene one = parse_scene(text, "test");
+        one.bar.gap = gap;
+        const auto points = forced_response(one, {}, [](const ForcedPoint&) {});
+        try {
+            EXPECT_GT(draw_charts(forced_charts(one, points), path / "charts", {.formats = {"svg"}}).size(), 0U)
+                << to << gap;
+        } catch (const NoGnuplot&) {
+        }
+    };
+    for (const double gap : {1.0, -1.0, 0.0, 100.0}) {
+        draw("count = 4", "count = 4", gap);
+        draw("to = 1.08\ncount = 4", "to = 0.99\ncount = 1", gap);
+    }
 }
 
 TEST_F(ForcedFolderTest, AStateIsReadOrRefusedWithItsLine) {

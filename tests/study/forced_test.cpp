@@ -95,6 +95,31 @@ TEST(Forced, FollowsTheFirstModeUpAndNotDown) {
     EXPECT_NEAR(predicted[0].frequency, 0.5 * (found[1].from + found[1].to), 0.025);
 }
 
+TEST(Forced, WhatStillGrowsOrBeatsIsNotCalledPeriodic) {
+    Scene scene = driven(40, 1e-3, {1.0});
+    scene.damping.value = 1e-3;  // rings up over hundreds of periods
+    scene.forcing->settle = 0;
+    for (const ForcedPoint& point : response(scene)) EXPECT_EQ(point.kind, ForcedKind::transient);
+    scene.damping = {};  // beats with the mode, far below the wall
+    scene.forcing->frequencies = {0.985};
+    scene.forcing->record = 400;
+    for (const ForcedPoint& point : response(scene)) EXPECT_EQ(point.kind, ForcedKind::quasi_periodic) << point.defect;
+}
+
+// Of a bar that is pressed against the wall the energy of a mode rises as its frequency falls.
+TEST(Forced, ThePredictedEndIsWhereTheEnergyRises) {
+    Scene scene = driven(100, 2.0, {1.36, 1.99});
+    scene.bar.gap = -1;
+    scene.damping.value = 0.2;
+    const auto points = balance_points(scene);
+    const auto ends = predicted_jumps(points);
+    ASSERT_EQ(ends.size(), 1U);
+    for (const BalancePoint& point : points) {
+        if (point.mode != 1) continue;
+        EXPECT_EQ(point.ratio < 1, point.frequency < ends[0].frequency || point.frequency > 1.931) << point.frequency;
+    }
+}
+
 // Along mode 1 the orbit of least energy is known: the tip moves with 4 d/(T - 3 tau) in flight, to and fro.
 TEST(Forced, TheBalanceOfTheFirstModeIsThatOfItsSawtooth) {
     const Scene scene = driven(200, 0.05, {1.0, 1.25});

@@ -137,6 +137,8 @@ TEST(DrivenBar, Misuse) {
     for (const double value : {-0.1, std::numeric_limits<double>::infinity(), std::nan("")})
         EXPECT_THROW(DrivenBar(unit, Mesh{3}, rest, {Kind::tip, value}), std::invalid_argument);
     EXPECT_THROW(DrivenBar(unit, Mesh{4}, rest, {}), std::invalid_argument);
+    EXPECT_THROW(DrivenBar(unit, Mesh{3}, (State(6) << 2, 2, 2, 0, 0, 0).finished(), {}),
+                 std::invalid_argument);  // in the wall
 }
 
 }  // namespace

@@ -15,7 +15,14 @@
 namespace nsma {
 namespace {
 
-bool has_contact(const ForcedPoint& point) { return point.kind != ForcedKind::contact_free; }
+bool has_contact(const ForcedPoint& point) { return point.peak_force > 0; }
+
+// The frequencies of the scene, of one alone a hundredth to either side.
+std::array<double, 2> frequency_axis(const Scene& scene) {
+    const auto& frequencies = scene.forcing->frequencies;
+    const double lo = frequencies.front(), hi = frequencies.back();
+    return lo < hi ? std::array{lo, hi} : std::array{0.99 * lo, 1.01 * hi};
+}
 
 // Energy over frequency of the exact mode k between two frequencies.
 std::string mode_rows(int mode, int gap_sign, double lo, double hi, double most) {
@@ -39,18 +46,19 @@ Chart response_chart(const Scene& scene, const std::vector<ForcedPoint>& points)
         least = std::min(least, point.energy_max);
         most = std::max(most, point.energy_max);
     }
-    const auto [lo, hi] = std::minmax_element(scene.forcing->frequencies.begin(), scene.forcing->frequencies.end());
+    const auto [lo, hi] = frequency_axis(scene);
     Chart chart{.name = "response",
                 .data = fmt::format("# {}: frequency omega/omega_1, greatest energy {}\n", scene.title,
                                     closed ? "[J]" : "E/E_g"),
                 .title = scene.title};
-    Panel panel{.frame = Frame{0.11, 0.965, 0.31, 0.92},
-                .x = {"frequency of the force ω/ω_1", range(*lo, *hi)},
-                .y = {closed ? "greatest energy (J)" : "greatest energy E/E_g", range(least / 2, most * 4)},
+    Panel panel{.frame = Frame{0.14, 0.965, 0.31, 0.92},
+                .x = {"frequency of the force ω/ω_1", range(lo, hi)},
+                .y = {closed ? "greatest energy (J)" : "greatest energy E/E_g",
+                      range(most > 0 ? least / 2 : 0.1, most > 0 ? most * 4 : 1)},
                 .key = "at screen 0.54, screen 0.175 center top vertical maxrows 4 samplen 3 width 1 font ',12'",
                 .settings = "set logscale y\n"};
     for (int mode = 1; !closed && mode <= 30; ++mode) {
-        const std::string rows = mode_rows(mode, scene.bar.gap_sign(), *lo, *hi, most * 4);
+        const std::string rows = mode_rows(mode, scene.bar.gap_sign(), lo, hi, most * 4);
         if (rows.empty()) continue;
         panel.curves.push_back({chart.add(fmt::format("mode-{}", mode), rows) + " using 1:2",
                                 "lines lw 5 lc rgb '#c8c8c8'",
@@ -171,15 +179,20 @@ Chart fields_chart(const Scene& scene, const ForcedPoint& point) {
 
 // The force that holds a mode against the damping, over its frequency: where it is the force itself, the response ends.
 Chart balance_chart(const Scene& scene, const std::vector<BalancePoint>& points) {
-    const auto [lo, hi] = std::minmax_element(scene.forcing->frequencies.begin(), scene.forcing->frequencies.end());
+    const auto [lo, hi] = frequency_axis(scene);
     const double force = scene.forcing->amplitude;
     const ScaledUnit unit = scaled_unit(force, "N");
+    double least = force * unit.factor, most = least;
+    for (const BalancePoint& point : points) {
+        least = std::min(least, force / point.ratio * unit.factor);
+        most = std::max(most, force / point.ratio * unit.factor);
+    }
     Chart chart{.name = "balance",
                 .data = fmt::format("# {}: frequency omega/omega_1, force [{}]\n", scene.title, unit.unit),
                 .title = scene.title};
-    Panel panel{.frame = Frame{0.11, 0.965, 0.27, 0.92},
-                .x = {"frequency ω/ω_1", range(*lo, *hi)},
-                .y = {fmt::format("force that holds the mode ({})", unit.unit)},
+    Panel panel{.frame = Frame{0.14, 0.965, 0.27, 0.92},
+                .x = {"frequency ω/ω_1", range(lo, hi)},
+                .y = {fmt::format("force that holds the mode ({})", unit.unit), range(0.8 * least, 1.25 * most)},
                 .key = "at screen 0.54, screen 0.13 center top vertical maxrows 2 samplen 3 width 1 font ',12'",
                 .settings = "set logscale y\n"};
     std::size_t place = 0;
@@ -235,7 +248,7 @@ Chart motions_chart(const Scene& scene, const std::vector<const ForcedPoint*>& p
         }
         // At least a hundredth of the range: what differs less is a point.
         const auto axis = [](double from, double to, double least) {
-            const double half = std::max(0.6 * (to - from), 0.5 * least);
+            const double half = std::max({0.6 * (to - from), 0.5 * least, 1e-3 * std::abs(from + to), 1e-9});
             return std::array{0.5 * (from + to) - half, 0.5 * (from + to) + half};
         };
         const auto across = axis(low, high, 0.01 * (point.tip_greatest - point.tip_least) * length.factor);

@@ -35,11 +35,13 @@ std::string line_of(const ForcedPoint& point) { return nlohmann::json(point).dum
 
 // A point of this scene. Throws where it is none.
 ForcedPoint point_in(const std::string& line, const Scene& scene) {
-    auto point = nlohmann::json::parse(line).get<ForcedPoint>();
+    const auto json = nlohmann::json::parse(line);
+    auto point = json.get<ForcedPoint>();
     const auto& frequencies = scene.forcing.value().frequencies;
     const bool known = point.place >= 0 && static_cast<std::size_t>(point.place) < frequencies.size() &&
                        point.frequency == frequencies[static_cast<std::size_t>(point.place)] &&
-                       point.waves.size() == static_cast<std::size_t>(scene.mesh.window());
+                       point.waves.size() == static_cast<std::size_t>(scene.mesh.window()) &&
+                       nlohmann::json(point) == json && point.periods >= 0 && !point.section.empty();
     const auto finite = [](double value) { return std::isfinite(value); };
     if (!known || !std::all_of(point.waves.begin(), point.waves.end(), finite) ||
         !(point.phase >= 0 && point.phase < 1))
@@ -114,10 +116,15 @@ ForcedFolder::ForcedFolder(const fs::path& folder, const Scene& scene, bool resu
 void ForcedFolder::add(const ForcedPoint& point) { part_.write(line_of(point)); }
 
 void ForcedFolder::finish(const std::vector<ForcedPoint>& points) {
-    part_.cut(0);  // in the order of the sweeps, whoever was first
-    for (const ForcedPoint& point : points) part_.write(line_of(point));
-    part_.close();
-    part_.put_in_place();
+    // In the order of the sweeps, whoever was first; until they are all there what was kept stays.
+    std::string text;
+    for (const ForcedPoint& point : points) text += line_of(point);
+    const fs::path ordered = folder_ / (std::string(forced_records_name) + ".ordered");
+    write_whole(ordered, text);
+    std::error_code code;
+    fs::rename(ordered, folder_ / forced_records_name, code);
+    if (!code) fs::remove((folder_ / forced_records_name).string() + part_suffix, code);
+    if (code) fail(folder_ / forced_records_name, fmt::format("cannot be written: {}", code.message()));
     write_forced(folder_, scene_, points);
 }
 
@@ -148,7 +155,18 @@ std::string forced_text(const Scene& scene, const std::vector<ForcedPoint>& poin
                                          [kind](const ForcedPoint& point) { return point.kind == kind; });
         row(fmt::format("  {}", name(kind)), fmt::format("{}", count));
     }
-    row("work - loss - growth, over work", fmt::format("{:.1e}", balance));
+    row("energy not accounted for, over work", fmt::format("{:.1e}", balance));
+    double work = 0, landing = 0;
+    for (const ForcedPoint& point : points) {
+        if (point.peak_force == 0) continue;
+        work += std::abs(point.work);
+        landing += point.landing;
+    }
+    if (work > 0) row("lost in landings, over work [%]", fmt::format("{:.1f}", 100 * landing / work));
+    if (landing > 0.05 * work)
+        text +=
+            "landings within a step take more than 5 % of the work, of the mesh and not of the bar: more cells, in "
+            "proportion less\n";
     const double hertz = 0.25 / scene.bar.travel_time();
     for (const Jump& jump : jumps(points)) {
         text +=

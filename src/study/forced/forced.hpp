@@ -13,7 +13,7 @@ namespace nsma {
 
 /// What kind of motion a driven bar settled to.
 enum class ForcedKind {
-    contact_free,     ///< no contact in the periods recorded; periodic
+    contact_free,     ///< periodic without contact
     periodic,         ///< returns after `periods` periods of the force within 0.1 %, with contact
     nearly_periodic,  ///< within 5 %: what a laboratory would call periodic
     quasi_periodic,   ///< does not return; neighbouring motions stay neighbours
@@ -58,7 +58,7 @@ struct BalancePoint {
 };
 /// Every orbit of the modes whose frequency lies within the sweep, by mode and frequency.
 [[nodiscard]] std::vector<BalancePoint> balance_points(const Scene& scene);
-/// The frequencies at which that ratio falls through 1, between neighbours on the mesh; by mode.
+/// The frequencies at which that ratio falls through 1 as the energy rises, between neighbours on the mesh; by mode.
 [[nodiscard]] std::vector<BalancePoint> predicted_jumps(const std::vector<BalancePoint>& points);
 /// An end of a range of frequencies in which the response depends on the direction of the sweep.
 struct Jump {
@@ -67,7 +67,8 @@ struct Jump {
     double to = 0;
     bool rises = false;  ///< to more energy
 };
-/// The jumps of two sweeps, where their greatest energies part by more than a fifth. None of one sweep alone.
+/// The jumps of two sweeps: where their greatest energies part by more than a fifth, that of the one as much from one
+/// frequency to the next, and its motion has settled on both sides. None of one sweep alone.
 [[nodiscard]] std::vector<Jump> jumps(const std::vector<ForcedPoint>& points);
 
 /// Sweeps the frequency of the force up and down. Sweeps, and of points from rest all points, are independent: they are

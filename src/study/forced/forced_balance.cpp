@@ -65,8 +65,9 @@ std::vector<BalancePoint> balance_points(const Scene& scene) {
 std::vector<BalancePoint> predicted_jumps(const std::vector<BalancePoint>& points) {
     std::vector<BalancePoint> found;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        const BalancePoint& a = points[i];
-        const BalancePoint& b = points[i + 1];
+        const bool rises = points[i].energy < points[i + 1].energy;  // of a negative gap they fall with the frequency
+        const BalancePoint& a = points[rises ? i : i + 1];
+        const BalancePoint& b = points[rises ? i + 1 : i];
         if (a.mode != b.mode || !(a.ratio >= 1) || b.ratio >= 1) continue;
         const double part = std::log(a.ratio) / std::log(a.ratio / b.ratio);
         found.push_back({a.mode, a.frequency + part * (b.frequency - a.frequency),

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <stdexcept>
@@ -88,18 +89,19 @@ public:
         DrivenBar bar(scene_.bar, scene_.mesh, start, scene_.damping);
         Cosine force(forcing_.amplitude, phase, 1.0 / period_);
         const auto settle = static_cast<long>(std::llround(forcing_.settle * period_));
+        bool pressed = false;
         for (long n = 0; n < settle; ++n) {
             if (n % turns_between_cosines == 0) stop_point();
-            (void)bar.step(force.next());
+            pressed = bar.step(force.next()).wall_force < 0;
         }
-        record(bar, force);
+        record(bar, force, pressed);
         for (int k = 0; k < bar.queue().window(); ++k) point_.waves.push_back(bar.queue().wave(k));
         point_.phase = force.phase();
         return std::move(point_);
     }
 
 private:
-    void record(DrivenBar& bar, Cosine& force) {
+    void record(DrivenBar& bar, Cosine& force, bool contact) {
         const auto steps = static_cast<long>(std::llround(forcing_.record * period_));
         const double unit = scene_.bar.energy_unit();
         const double before = bar.energy();
@@ -115,7 +117,7 @@ private:
         tips.reserve(static_cast<std::size_t>(steps) + 1);
         double energy = before, work = 0, loss = 0, landing = 0, sum = 0, first_half = 0;
         long phases = 0;
-        bool contact = false, touched = false;
+        bool touched = false;
         for (long n = 0; n < steps; ++n) {
             if (n % turns_between_cosines == 0) stop_point();
             const double pull = force.next();
@@ -155,33 +157,44 @@ private:
             work == 0 && loss == 0 ? 0 : std::abs(work - loss - landing - (after - before)) / (std::abs(work) + loss);
         point_.contact_phases = static_cast<double>(phases) / count;
         const double now = distance(bar.queue(), other.queue());
-        point_.divergence = now > 0 && apart > 0 ? std::log(now / apart) : 0.0;
+        // What has died out is as near as can be told.
+        point_.divergence = apart > 0 ? std::log(std::max(now / apart, std::numeric_limits<double>::epsilon())) : 0.0;
         find_return(tips, return_tolerance);
         const bool returns = point_.periods > 0;
         if (!returns) find_return(tips, near_tolerance);
         const double second_half = 2 * mean - first_half;
-        if (!touched && returns) {
-            point_.kind = ForcedKind::contact_free;
-        } else if (point_.periods > 0) {
-            point_.kind = returns ? ForcedKind::periodic : ForcedKind::nearly_periodic;
-        } else if (std::abs(second_half - first_half) > steady_tolerance * mean) {
+        const bool settled = std::abs(second_half - first_half) <= steady_tolerance * mean;
+        // A difference that only shears grows with the number of periods.
+        const bool parts = point_.divergence > parting + std::log(count);
+        if (returns) {
+            point_.kind = touched ? ForcedKind::periodic : ForcedKind::contact_free;
+        } else if (!settled) {
             point_.kind = ForcedKind::transient;
+            point_.periods = 0;
+        } else if (point_.periods > 0) {
+            point_.kind = ForcedKind::nearly_periodic;
         } else {
-            point_.kind = point_.divergence > parting ? ForcedKind::chaotic : ForcedKind::quasi_periodic;
+            point_.kind = parts ? ForcedKind::chaotic : ForcedKind::quasi_periodic;
         }
     }
 
-    // The least number of periods after which the tip is where it was, all through the record.
+    // The least number of periods after which the tip is where it was, all through the record, and after as many of
+    // them as there are in half of it: neither grows, fades nor beats.
     void find_return(const std::vector<double>& tips, double tolerance) {
         const double range = point_.tip_greatest - point_.tip_least;
-        for (int periods = 1; periods <= std::min(most_periods, forcing_.record / 2); ++periods) {
+        const auto defect_after = [&](int periods) {
             const double shift = periods * period_;
             double worst = 0;
             for (std::size_t n = 0; static_cast<double>(n) + shift <= static_cast<double>(tips.size() - 1); ++n)
                 worst = std::max(worst, std::abs(tip_at(tips, static_cast<double>(n) + shift) - tips[n]));
-            const double defect = range > 0 ? worst / range : 0.0;
+            return range > 0 ? worst / range : 0.0;
+        };
+        for (int periods = 1; periods <= std::min(most_periods, forcing_.record / 2); ++periods) {
+            const double defect = defect_after(periods);
             if (periods == 1) point_.defect = defect;
             if (defect > tolerance) continue;
+            const int many = periods * std::max(1, forcing_.record / (2 * periods));
+            if (defect_after(many) > tolerance) continue;
             point_.periods = periods;
             point_.defect = defect;
             return;
@@ -211,6 +224,10 @@ std::vector<Jump> jumps(const std::vector<ForcedPoint>& points) {
     }
     std::vector<Jump> found;
     bool before = false;
+    const auto settled = [](const ForcedPoint& point) {
+        return point.kind != ForcedKind::transient && point.kind != ForcedKind::chaotic &&
+               point.kind != ForcedKind::quasi_periodic;
+    };
     for (std::size_t i = 0; i < both.size(); ++i) {
         const auto [up, down] = both[i];
         if (up == nullptr || down == nullptr) return {};
@@ -220,8 +237,9 @@ std::vector<Jump> jumps(const std::vector<ForcedPoint>& points) {
         if (i > 0 && differ != before) {
             const ForcedPoint* const left = both[i - 1][before ? 0 : 1];
             const ForcedPoint* const right = before ? up : down;
-            found.push_back({before, left->frequency, right->frequency,
-                             before ? right->energy_max > left->energy_max : left->energy_max > right->energy_max});
+            const double change = before ? right->energy_max / left->energy_max : left->energy_max / right->energy_max;
+            if (settled(*left) && settled(*right) && (change > other || change < 1 / other))
+                found.push_back({before, left->frequency, right->frequency, change > 1});
         }
         before = differ;
     }
@@ -261,6 +279,10 @@ std::vector<ForcedPoint> forced_response(const Scene& scene, const std::vector<F
             double phase = 0;
             try {
                 for (ForcedPoint& point : *strand) {
+                    {
+                        const std::lock_guard lock(mutex);
+                        if (failure) return;
+                    }
                     const auto old = std::find_if(known.begin(), known.end(), [&](const ForcedPoint& one) {
                         return one.up == point.up && one.place == point.place;
                     });

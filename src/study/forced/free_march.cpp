@@ -61,7 +61,11 @@ State perturbed(const Bar& bar, const State& state, double share) {
     };
     State difference = State::NullaryExpr(state.size(), [&](Eigen::Index) { return normal(random); });
     difference *= share * scaled(state, 1 / bar.impedance()).norm() / difference.norm();
-    return state + scaled(difference, bar.impedance());
+    difference = scaled(difference, bar.impedance());
+    // Into the wall it must not be.
+    const Mesh mesh{static_cast<int>(cells)};
+    if (tip_displacement(bar, mesh, difference) > 0) difference = -difference;
+    return state + difference;
 }
 
 }  // namespace nsma

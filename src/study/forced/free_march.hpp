@@ -32,7 +32,7 @@ struct FreeMarch {
 [[nodiscard]] FreeMarch free_march(const Bar& bar, const Mesh& mesh, const State& state, const Damping& damping,
                                    long steps);
 
-/// A state with a random difference of this share of its energy norm (seed fixed).
+/// A state with a random difference of this share of its energy norm (seed fixed), its tip no nearer to the wall.
 [[nodiscard]] State perturbed(const Bar& bar, const State& state, double share);
 
 }  // namespace nsma
