@@ -17,6 +17,28 @@ namespace {
 
 bool has_contact(const ForcedPoint& point) { return point.peak_force > 0; }
 
+// Factors from omega_1 and the energy unit to what axes show: hertz and joules, but of a bar without units.
+struct Shown {
+    double frequency = 1, energy = 1;
+    std::string frequency_label = "frequency of the force ω/ω_1", energy_label = "greatest energy E/E_g";
+};
+Shown shown(const Scene& scene, double most_energy) {
+    const Bar& bar = scene.bar;
+    Shown axes;
+    if (!is_unit_bar(bar)) {
+        const double hertz = 0.25 / bar.travel_time();
+        const ScaledUnit unit = scaled_unit(hertz * scene.forcing->frequencies.back(), "Hz");
+        axes.frequency = hertz * unit.factor;
+        axes.frequency_label = fmt::format("frequency of the force ({})", unit.unit);
+    }
+    if (!is_unit_bar(bar) || bar.gap == 0) {
+        const ScaledUnit unit = scaled_unit(bar.energy_unit() * most_energy, "J");
+        axes.energy = bar.energy_unit() * unit.factor;
+        axes.energy_label = fmt::format("greatest energy ({})", unit.unit);
+    }
+    return axes;
+}
+
 // The frequencies of the scene, of one alone a hundredth to either side.
 std::array<double, 2> frequency_axis(const Scene& scene) {
     const auto& frequencies = scene.forcing->frequencies;
@@ -25,16 +47,16 @@ std::array<double, 2> frequency_axis(const Scene& scene) {
 }
 
 // Energy over frequency of the exact mode k between two frequencies.
-std::string mode_rows(int mode, int gap_sign, double lo, double hi, double most) {
+std::string mode_rows(int mode, int gap_sign, std::array<double, 2> ends, double most, const Shown& axes) {
     std::string rows;
     const PeriodInterval periods = backbone_period_interval(mode, gap_sign);
     constexpr int pieces = 400;
     for (int i = 0; i <= pieces; ++i) {
-        const double frequency = lo + (hi - lo) * i / pieces;
+        const double frequency = ends[0] + (ends[1] - ends[0]) * i / pieces;
         const double period = 4 / frequency;
         if (period <= periods.lo || period > periods.hi) continue;
         const double energy = backbone_energy_ratio(mode, period);
-        if (energy <= most) rows += fmt::format("{} {}\n", frequency, energy);
+        if (energy <= most) rows += fmt::format("{} {}\n", frequency * axes.frequency, energy * axes.energy);
     }
     return rows;
 }
@@ -47,18 +69,18 @@ Chart response_chart(const Scene& scene, const std::vector<ForcedPoint>& points)
         most = std::max(most, point.energy_max);
     }
     const auto [lo, hi] = frequency_axis(scene);
+    const Shown axes = shown(scene, most);
     Chart chart{.name = "response",
-                .data = fmt::format("# {}: frequency omega/omega_1, greatest energy {}\n", scene.title,
-                                    closed ? "[J]" : "E/E_g"),
+                .data = fmt::format("# {}: {}, {}\n", scene.title, axes.frequency_label, axes.energy_label),
                 .title = scene.title};
     Panel panel{.frame = Frame{0.14, 0.965, 0.31, 0.92},
-                .x = {"frequency of the force ω/ω_1", range(lo, hi)},
-                .y = {closed ? "greatest energy (J)" : "greatest energy E/E_g",
-                      range(most > 0 ? least / 2 : 0.1, most > 0 ? most * 4 : 1)},
+                .x = {axes.frequency_label, range(lo * axes.frequency, hi * axes.frequency)},
+                .y = {axes.energy_label,
+                      range((most > 0 ? least / 2 : 0.1) * axes.energy, (most > 0 ? most * 4 : 1) * axes.energy)},
                 .key = "at screen 0.54, screen 0.175 center top vertical maxrows 4 samplen 3 width 1 font ',12'",
                 .settings = "set logscale y\n"};
     for (int mode = 1; !closed && mode <= 30; ++mode) {
-        const std::string rows = mode_rows(mode, scene.bar.gap_sign(), lo, hi, most * 4);
+        const std::string rows = mode_rows(mode, scene.bar.gap_sign(), {lo, hi}, most * 4, axes);
         if (rows.empty()) continue;
         panel.curves.push_back({chart.add(fmt::format("mode-{}", mode), rows) + " using 1:2",
                                 "lines lw 5 lc rgb '#c8c8c8'",
@@ -76,7 +98,7 @@ Chart response_chart(const Scene& scene, const std::vector<ForcedPoint>& points)
         for (const ForcedPoint& point : points) {
             if (point.up != look.up) continue;
             if (has_contact(point) == look.contact)
-                rows += fmt::format("{} {}\n", point.frequency, point.energy_max);
+                rows += fmt::format("{} {}\n", point.frequency * axes.frequency, point.energy_max * axes.energy);
             else if (look.contact && !rows.empty() && !rows.ends_with("\n\n"))
                 rows += "\n";  // the line ends
         }
@@ -88,7 +110,7 @@ Chart response_chart(const Scene& scene, const std::vector<ForcedPoint>& points)
     for (const ForcedPoint& point : points) {
         if (point.kind == ForcedKind::chaotic || point.kind == ForcedKind::quasi_periodic ||
             point.kind == ForcedKind::transient)
-            odd += fmt::format("{} {}\n", point.frequency, point.energy_max);
+            odd += fmt::format("{} {}\n", point.frequency * axes.frequency, point.energy_max * axes.energy);
     }
     if (!odd.empty())
         panel.curves.push_back({chart.add("not-periodic", odd) + " using 1:2",
@@ -96,7 +118,7 @@ Chart response_chart(const Scene& scene, const std::vector<ForcedPoint>& points)
     for (const BalancePoint& jump : predicted_jumps(balance_points(scene))) {
         panel.settings +=
             fmt::format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead dt 2 lw 1.5 lc rgb '#333333'\n",
-                        jump.frequency);
+                        jump.frequency * axes.frequency);
         panel.curves.push_back(
             {"NaN", "lines dt 2 lw 1.5 lc rgb '#333333'", fmt::format("mode {} ends by energy balance", jump.mode)});
     }
@@ -181,6 +203,7 @@ Chart fields_chart(const Scene& scene, const ForcedPoint& point) {
 Chart balance_chart(const Scene& scene, const std::vector<BalancePoint>& points) {
     const auto [lo, hi] = frequency_axis(scene);
     const double force = scene.forcing->amplitude;
+    const Shown axes = shown(scene, 1.0);
     const ScaledUnit unit = scaled_unit(force, "N");
     double least = force * unit.factor, most = least;
     for (const BalancePoint& point : points) {
@@ -191,7 +214,7 @@ Chart balance_chart(const Scene& scene, const std::vector<BalancePoint>& points)
                 .data = fmt::format("# {}: frequency omega/omega_1, force [{}]\n", scene.title, unit.unit),
                 .title = scene.title};
     Panel panel{.frame = Frame{0.14, 0.965, 0.27, 0.92},
-                .x = {"frequency ω/ω_1", range(lo, hi)},
+                .x = {axes.frequency_label, range(lo * axes.frequency, hi * axes.frequency)},
                 .y = {fmt::format("force that holds the mode ({})", unit.unit), range(0.8 * least, 1.25 * most)},
                 .key = "at screen 0.54, screen 0.13 center top vertical maxrows 2 samplen 3 width 1 font ',12'",
                 .settings = "set logscale y\n"};
@@ -199,7 +222,8 @@ Chart balance_chart(const Scene& scene, const std::vector<BalancePoint>& points)
     for (const int mode : distinct(points, [](const BalancePoint& point) { return point.mode; })) {
         std::string rows;
         for (const BalancePoint& point : points) {
-            if (point.mode == mode) rows += fmt::format("{} {}\n", point.frequency, force / point.ratio * unit.factor);
+            if (point.mode == mode)
+                rows += fmt::format("{} {}\n", point.frequency * axes.frequency, force / point.ratio * unit.factor);
         }
         panel.curves.push_back({chart.add(fmt::format("mode-{}", mode), rows) + " using 1:2",
                                 marked_line(curve_styles.at(place++ % curve_styles.size()), 0.6),
