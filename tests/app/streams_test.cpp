@@ -151,7 +151,8 @@ TEST_F(Surroundings, WhatCannotBeReadSaysWhy) {
     fs::create_directory(path("shut"));
     fs::permissions(folder_, fs::perms::all, fs::perm_options::add);
     fs::permissions(path("shut"), fs::perms::none);
-    for (const Words& words : {Words{"export", path("shut")}, Words{"plot", path("shut")}}) {
+    for (const Words& words :
+         {Words{"export", path("shut")}, Words{"plot", path("shut")}, Words{"report", path("shut")}}) {
         const pid_t child =
             process::start(with({NSMA_PROGRAM}, words), path(".out"), path(".err"), {.no_rights = true});
         const Result refused = finish(child);

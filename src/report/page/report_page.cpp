@@ -243,11 +243,16 @@ std::string filled(const std::string& data) {
 }  // namespace
 
 std::string report_page(const fs::path& folder, const std::string& program) {
-    std::error_code code;
-    const bool sweep = fs::exists(folder / store_name, code) || fs::exists(folder / store_part_name, code);
-    const bool accuracy = fs::exists(folder / accuracy_records_name, code);
+    const auto holds = [&folder](const char* file) {
+        std::error_code code;
+        const bool found = fs::exists(folder / file, code);
+        if (code) fail(folder / file, fmt::format("cannot be read: {}", code.message()));
+        return found;
+    };
+    expect_folder(folder, "the folder of a sweep or of an accuracy study");
+    const bool sweep = holds(store_name) || holds(store_part_name);
+    const bool accuracy = holds(accuracy_records_name);
     if (!sweep && !accuracy) {
-        expect_folder(folder, "the folder of a sweep or of an accuracy study");
         fail(folder, fmt::format("expected the folder of a sweep or of an accuracy study, got one without {} and {}",
                                  store_name, accuracy_records_name));
     }
