@@ -16,9 +16,11 @@
 #include "nsma/report/input_error.hpp"
 #include "nsma/report/scene_file.hpp"
 #include "report/accuracy/accuracy_folder.hpp"
+#include "report/forced/forced_folder.hpp"
 #include "report/orbit_folder.hpp"
 #include "report/sensitivity/sensitivity_charts.hpp"
 #include "report/sensitivity/sensitivity_folder.hpp"
+#include "report/state_file.hpp"
 #include "report/study_records.hpp"
 #include "report/sweep/sweep_charts.hpp"
 
@@ -26,11 +28,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* forcing_text =
+    "[damping]\nkind = \"tip\"\nvalue = 0.1\n[forcing]\namplitude = 0.5\nfrom = 1.0\nto = 1.1\ncount = 2\nsettle = 2\n"
+    "record = 2\n";
+
 struct Place {
     fs::path folder = fs::temp_directory_path() / ("nsma-fuzz-study-" + std::to_string(getpid()));
     Place() {
         fs::create_directories(folder);
-        std::ofstream(folder / "scene.toml") << sweep_scene_text;
+        std::ofstream(folder / "scene.toml") << sweep_scene_text << forcing_text;
     }
     ~Place() { fs::remove_all(folder); }
 };
@@ -55,6 +61,15 @@ void read_and_draw(char kind, const fs::path& folder, const std::string& text) {
         const auto [read, orbit] = nsma::read_orbit_folder(folder);
         nsma::write_orbit_curves(folder, orbit);
         charts = nsma::charts_of(read, orbit, "orbit");
+    } else if (kind == 'f') {
+        write(nsma::forced_records_name, text);
+        const auto points = nsma::read_forced(folder, scene);
+        nsma::write_forced(folder, scene, points);
+        charts = nsma::forced_charts(scene, points);
+    } else if (kind == 'q') {
+        write("state.csv", text);
+        const nsma::State state = nsma::read_state(folder / "state.csv", scene.mesh);
+        fuzz::expect(state.allFinite(), "a state is finite");
     } else if (kind == 'a') {
         write(nsma::accuracy_records_name, under_checksum(text));
         const auto records = nsma::read_accuracy_records(folder);

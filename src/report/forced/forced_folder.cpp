@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "wave/driven_bar.hpp"
 #include "nsma/report/input_error.hpp"
 #include "report/csv.hpp"
 #include "report/csv_metadata.hpp"
@@ -46,6 +47,7 @@ ForcedPoint point_in(const std::string& line, const Scene& scene) {
     if (!known || !std::all_of(point.waves.begin(), point.waves.end(), finite) ||
         !(point.phase >= 0 && point.phase < 1))
         throw std::invalid_argument("point");
+    (void)DrivenBar(scene.bar, scene.mesh, state_of_waves(scene.bar, point.waves), scene.damping);  // throws
     return point;
 }
 
