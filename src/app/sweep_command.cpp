@@ -136,6 +136,18 @@ std::string energies_text(const std::array<double, 2>& span, const Bar& bar) {
     return bar.gap == 0 ? joules : fmt::format("{:.6g} to {:.6g} E_g ({})", span[0], span[1], joules);
 }
 
+// A study in the same folder that cannot be read takes nothing from the sweep.
+void write_report(const std::filesystem::path& folder) {
+    std::string page;
+    try {
+        page = report_page(folder, version());
+    } catch (const InputError& error) {
+        return say("no report: {}; the tables are complete without it", error.what());
+    }
+    write_whole(folder / report_name, page);
+    fmt::print("report   {}\n", (folder / report_name).string());
+}
+
 }  // namespace
 
 int run_sweep(const Arguments& arguments) {
@@ -162,9 +174,7 @@ int run_sweep(const Arguments& arguments) {
         fmt::print("no level was solved: the orbits of these patterns have {}\n", energies_text(*span, scene.bar));
     if (summary.interrupted) return exit_interrupted;
     draw_if_possible(sweep_charts(read_sweep_folder(arguments.out)), arguments.out);
-    const std::filesystem::path report = std::filesystem::path(arguments.out) / report_name;
-    write_whole(report, report_page(arguments.out, version()));
-    fmt::print("report   {}\n", report.string());
+    write_report(arguments.out);
     if (summary.failed + summary.failed_patterns + summary.disagreed + summary.one_failed > 0) return exit_solver;
     if (summary.left > 0 && summary.left == summary.admissible) {
         say("no pattern of the scene is a contact motion; --all-kinds solves the other {}", summary.left);

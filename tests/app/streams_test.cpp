@@ -321,6 +321,11 @@ TEST_F(Surroundings, EveryFolderIsExportedAndPlotted) {
         expect_refused({"plot", path("both"), "--format", word}, "--format: expected svg, png, pdf");
     for (const std::string word : {"10", "x", "400x", "x300", "400x300x2", "1e3", "-400", "99999"})
         expect_refused({"plot", path("both"), "--size", word}, "--size: expected WIDTH");
+    // A damaged study beside a sweep is told, and takes nothing from it.
+    write("both/sensitivity.json", "damaged");
+    const Result beside = run({"sweep", scene_, "--out", path("both"), "--quiet"});
+    EXPECT_EQ(beside.exit_code, 0);
+    EXPECT_NE(beside.err.find("no report: "), std::string::npos) << beside.err;
 }
 
 TEST_F(Surroundings, WithoutGnuplotTheTablesAreComplete) {
