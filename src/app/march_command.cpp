@@ -87,6 +87,7 @@ int run_march(const Arguments& arguments) {
         std::map<std::pair<int, int>, int> counts;
         for (const auto& cycle : cycles) ++counts[{cycle.free, cycle.contact}];
         std::vector<std::pair<int, std::pair<int, int>>> often;
+        often.reserve(counts.size());
         for (const auto& [cycle, count] : counts) often.emplace_back(count, cycle);
         std::sort(often.rbegin(), often.rend());
         fmt::print("seen          ");

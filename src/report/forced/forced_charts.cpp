@@ -186,8 +186,9 @@ Chart fields_chart(const Scene& scene, const ForcedPoint& point) {
         if (n % every_step == 0) {
             const State now = driven.queue().state();
             for (int column = 0; column < columns; ++column) {
-                fields.stress(n / every_step, column) = now[column * every_cell];
-                fields.velocity(n / every_step, column) = now[scene.mesh.cells + column * every_cell];
+                const Eigen::Index cell = Eigen::Index{column} * every_cell;
+                fields.stress(n / every_step, column) = now[cell];
+                fields.velocity(n / every_step, column) = now[scene.mesh.cells + cell];
             }
         }
         const bool presses = driven.step(force_at(scene, point, begin + n)).wall_force < 0;
