@@ -325,7 +325,7 @@ TEST_F(ReportPage, FitsADeskAPhoneAndPaper) {
     EXPECT_EQ(page->evaluate("getComputedStyle(document.querySelector('.tools')).display"), "none");
     EXPECT_EQ(page->pdf().compare(0, 4, "%PDF"), 0);
     // Paper is white whatever the theme; afterwards the theme is as it was, and so is the view.
-    page->evaluate("document.documentElement.dataset.theme = 'dark', nsma.sweep.animation.to(20)");
+    page->evaluate("document.querySelector('#theme').click(), nsma.sweep.animation.to(20)");
     page->evaluate("window.dispatchEvent(new Event('beforeprint'))");
     EXPECT_EQ(paper(), "rgb(255, 255, 255)");
     page->evaluate("window.dispatchEvent(new Event('afterprint'))");

@@ -1,5 +1,5 @@
 /** The page of an accuracy study: speed against error, and maps of where each method fails. */
-import {element, marks, Plot, shape} from "./plot.js";
+import {element, legendEntry, Plot} from "./plot.js";
 
 import {short, si} from "./units.js";
 
@@ -32,6 +32,7 @@ function speedChart(host, data, pageTools) {
               (one) => ({x: one.seconds, y: Math.min(Math.max(one.error ?? Infinity, leastError), mostError), record: one}));
   const layersOf = (size) => methods.map((method, i) => ({
                                            name: `method-${i}`,
+                                           title: method,
                                            mark: markNames[i % markNames.length],
                                            size: 5,
                                            points: pointsOf(size, method),
@@ -64,13 +65,7 @@ function speedChart(host, data, pageTools) {
         `${si(record.seconds, "s", 3)}, ${record.certified} of ${record.runs} certified`,
   });
   select.addEventListener("change", () => plot.set({layers: layersOf(Number(select.value))}));
-  methods.forEach((method, i) => {
-    const box = element(
-        "input", {type: "checkbox", checked: true, onchange: ({target}) => plot.toggle(`method-${i}`, target.checked)});
-    const swatch = shape("svg", {viewBox: "0 0 26 14", class: "swatch", "aria-hidden": "true"});
-    swatch.append(shape("path", {d: marks[markNames[i % markNames.length]](13, 7, 5), class: `layer method-${i}`}));
-    legend.append(element("label", {}, box, swatch, method));
-  });
+  for (const layer of plot.options.layers) legend.append(legendEntry(plot, layer));
   pageTools.plots.push(plot);
 }
 
@@ -81,7 +76,7 @@ function stabilityMap(data, name) {
       [...new Map(cells.map(({column, difficulty}) => [column, difficulty])).entries()].sort((a, b) => a[0] - b[0]);
   const head = element(
       "tr", {}, element("th", {scope: "col"}, "method"),
-      ...columns.map(([, difficulty]) => element("th", {scope: "col", class: "slanted"}, difficulty)));
+      ...columns.map(([, difficulty]) => element("th", {scope: "col"}, difficulty)));
   const rows = methods.map(
       (method) => element("tr", {}, element("th", {scope: "row"}, method), ...columns.map(([column]) => {
         const here = cells.filter((one) => one.method === method && one.column === column);
@@ -90,7 +85,6 @@ function stabilityMap(data, name) {
         const outcomes = data.outcomes.map((_, i) => here.reduce((sum, one) => sum + one.outcomes[i], 0));
         const share = outcomes[0] / runs;
         const cause = causeOf(outcomes, data.outcomes);
-        const text = cause === "" ? "" : cause;
         const spent =
             outcomes.map((count, i) => (count > 0 ? `${data.outcomes[i]} ${count}` : "")).filter((part) => part !== "");
         return element(
@@ -100,7 +94,7 @@ function stabilityMap(data, name) {
                                    "bad",
               title: `${method}, ${columns.find(([at]) => at === column)[1]}: ${spent.join(", ")} of ${runs}`,
             },
-            share === 1 ? "✓" : `${Math.round(100 * share)} % ✓, ${text}`);
+            share === 1 ? "✓" : `${Math.round(100 * share)} % ✓, ${cause}`);
       })));
   return element(
       "section", {}, element("h3", {}, maps[name] ?? name),

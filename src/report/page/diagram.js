@@ -1,5 +1,5 @@
 /** The frequency-energy diagram of a sweep. */
-import {element, marks, Plot, shape} from "./plot.js";
+import {legendEntry, Plot} from "./plot.js";
 
 import {short, si} from "./units.js";
 
@@ -27,19 +27,8 @@ export class Diagram {
     this.collect();
     this.plot =
         new Plot(host, {...this.options(), id: "diagram", name: "frequency-energy diagram; arrows move along the branch"});
-    for (const look of looks) {
-      if (this.layers().find(({name}) => name === look.name).empty) continue;
-      const box = element("input", {
-        type: "checkbox",
-        checked: true,
-        onchange: (event) => {
-          this.plot.toggle(look.name, event.target.checked);
-        }
-      });
-      const swatch = shape("svg", {viewBox: "0 0 26 14", class: "swatch", "aria-hidden": "true"});
-      const path = look.line ? "M1 7H25" : marks[look.mark](13, 7, look.size ?? 4);
-      swatch.append(shape("path", {d: path, class: `layer ${look.name}`}));
-      legend.append(element("label", {}, box, swatch, look.title));
+    for (const layer of this.plot.options.layers) {
+      if (!layer.empty) legend.append(legendEntry(this.plot, layer));
     }
   }
 

@@ -6,6 +6,15 @@ import {SweepPage} from "./sweep.js";
 const find = (selector) => document.querySelector(selector);
 const data = JSON.parse(find("#data").textContent);
 
+// The theme of the system, until another is chosen.
+const root = document.documentElement;
+const system = matchMedia("(prefers-color-scheme: dark)");
+let chosen = null;
+const paint = () => {
+  root.dataset.theme = chosen ?? (system.matches ? "dark" : "light");
+};
+paint();
+
 document.title = `${data.title} – nsma`;
 find("#title").textContent = data.title;
 find("#derived").textContent = data.derived;
@@ -23,30 +32,25 @@ if (data.accuracy)
 else
   find("#accuracy").remove();
 
-const root = document.documentElement;
-const system = matchMedia("(prefers-color-scheme: dark)");
 const redraw = () => {
   for (const page of pages) page.redraw();
 };
 find("#theme").addEventListener("click", () => {
-  const dark = root.dataset.theme ? root.dataset.theme === "dark" : system.matches;
-  root.dataset.theme = dark ? "light" : "dark";
+  chosen = root.dataset.theme === "dark" ? "light" : "dark";
+  paint();
   redraw();
 });
-system.addEventListener("change", redraw);
-
+system.addEventListener("change", () => {
+  paint();
+  redraw();
+});
 // Paper is white.
-let onScreen = null;
 window.addEventListener("beforeprint", () => {
-  onScreen = root.dataset.theme ?? null;
   root.dataset.theme = "light";
   redraw();
 });
 window.addEventListener("afterprint", () => {
-  if (onScreen === null)
-    delete root.dataset.theme;
-  else
-    root.dataset.theme = onScreen;
+  paint();
   redraw();
 });
 

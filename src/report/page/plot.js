@@ -23,6 +23,14 @@ export function shape(name, attributes = {}, text = "") {
   return made;
 }
 
+/** A box that shows a layer of a plot or hides it, with what stands for it: a mark, or a line. */
+export function legendEntry(plot, {name, title, mark, size, line}) {
+  const box = element("input", {type: "checkbox", checked: true, onchange: ({target}) => plot.toggle(name, target.checked)});
+  const swatch = shape("svg", {viewBox: "0 0 26 14", class: "swatch", "aria-hidden": "true"});
+  swatch.append(shape("path", {d: line ? "M1 7H25" : marks[mark](13, 7, size ?? 4), class: `layer ${name}`}));
+  return element("label", {}, box, swatch, title);
+}
+
 /** The path of a mark of some radius about a point. */
 export const marks = {
   circle: (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${- 2 * r} 0`,

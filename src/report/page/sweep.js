@@ -129,7 +129,7 @@ export class SweepPage {
         {
           canvas: find("#bar"),
           play: find("#play"),
-          slower: find("#speed"),
+          slower: find("#slower"),
           slider: find("#time"),
           output: find("#moment"),
         },
