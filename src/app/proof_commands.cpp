@@ -154,9 +154,9 @@ private:
         if (proof.certificate.claim == Certificate::Claim::nonempty) count(proof, *proof.certificate.kind);
         if (proof.certificate.optimum) {
             const Optimum& optimum = *proof.certificate.optimum;
-            const bool shock = optimum.objective == Optimum::Of::least_shock;
-            if (!request_.level || optimum.energy != decimal(*request_.level) ||
-                shock != (request_.objective == Objective::least_shock))
+            const auto objective =
+                request_.objective == Objective::least_shock ? Optimum::Of::least_shock : Optimum::Of::least_force;
+            if (!request_.level || optimum.energy != decimal(*request_.level) || optimum.objective != objective)
                 refuse("no optimum of another objective or energy", got + " with one");
             optima_.add(optimum);
         } else if (request_.level) {
