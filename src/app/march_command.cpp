@@ -1,4 +1,4 @@
-#include <cmath>
+#include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
@@ -9,7 +9,6 @@
 #include "study/forced/free_march.hpp"
 #include "nsma/report/input_error.hpp"
 #include "report/bar_text.hpp"
-#include "report/input_file.hpp"
 #include "report/state_file.hpp"
 
 namespace nsma::app {
@@ -53,17 +52,15 @@ int run_march(const Arguments& arguments) {
                             ? orbit_start(arguments, scene)
                             : Start{read_state(arguments.state, scene.mesh), 4 * scene.mesh.cells, arguments.state};
     const State state = arguments.perturb > 0 ? perturbed(scene.bar, start.state, arguments.perturb) : start.state;
-    const double periods = arguments.periods;
     FreeMarch march;
     try {
-        march =
-            free_march(scene.bar, scene.mesh, state, scene.damping, static_cast<long>(periods) * start.period_steps);
+        march = free_march(scene.bar, scene.mesh, state, scene.damping, long{arguments.periods} * start.period_steps);
     } catch (const std::invalid_argument& error) {
         throw InputError(fmt::format("{}: {}", start.name, error.what()));
     }
     fmt::print("{}\nstart         {}{}\n", derived_text(scene), start.name,
                arguments.perturb > 0 ? fmt::format(", moved by {:g} of its norm", arguments.perturb) : "");
-    fmt::print("marched       {} periods of {} steps, {}\n", periods, start.period_steps,
+    fmt::print("marched       {} periods of {} steps, {}\n", arguments.periods, start.period_steps,
                scene.damping.kind == Damping::Kind::none
                    ? "no damping"
                    : fmt::format("damping {:g} ({})", scene.damping.value,

@@ -15,12 +15,13 @@
 namespace nsma {
 
 // Of the records: numbers as they are.
-NLOHMANN_JSON_SERIALIZE_ENUM(ForcedKind, {{ForcedKind::contact_free, "contact-free"},
-                                          {ForcedKind::periodic, "periodic"},
-                                          {ForcedKind::nearly_periodic, "nearly-periodic"},
-                                          {ForcedKind::quasi_periodic, "quasi-periodic"},
-                                          {ForcedKind::chaotic, "chaotic"},
-                                          {ForcedKind::transient, "transient"}})
+void to_json(nlohmann::json& json, ForcedKind kind) { json = name(kind); }
+void from_json(const nlohmann::json& json, ForcedKind& kind) {
+    const auto* found =
+        std::find_if(forced_kinds.begin(), forced_kinds.end(), [&](ForcedKind one) { return json == name(one); });
+    if (found == forced_kinds.end()) throw std::invalid_argument("kind");
+    kind = *found;
+}
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ForcedPoint, up, place, frequency, kind, periods, defect, divergence, energy_mean,
                                    energy_max, tip_least, tip_greatest, peak_force, work, loss, landing, balance,
                                    growth, contact_phases, section, waves, phase)
@@ -36,13 +37,12 @@ std::string line_of(const ForcedPoint& point) { return nlohmann::json(point).dum
 
 // A point of this scene. Throws where it is none.
 ForcedPoint point_in(const std::string& line, const Scene& scene) {
-    const auto json = nlohmann::json::parse(line);
-    auto point = json.get<ForcedPoint>();
+    auto point = nlohmann::json::parse(line).get<ForcedPoint>();
     const auto& frequencies = scene.forcing.value().frequencies;
     const bool known = point.place >= 0 && static_cast<std::size_t>(point.place) < frequencies.size() &&
                        point.frequency == frequencies[static_cast<std::size_t>(point.place)] &&
-                       point.waves.size() == static_cast<std::size_t>(scene.mesh.window()) &&
-                       nlohmann::json(point) == json && point.periods >= 0 && !point.section.empty();
+                       point.waves.size() == static_cast<std::size_t>(scene.mesh.window()) && point.periods >= 0 &&
+                       !point.section.empty();
     const auto finite = [](double value) { return std::isfinite(value); };
     if (!known || !std::all_of(point.waves.begin(), point.waves.end(), finite) ||
         !(point.phase >= 0 && point.phase < 1))
@@ -151,8 +151,7 @@ std::string forced_text(const Scene& scene, const std::vector<ForcedPoint>& poin
     row("frequencies", fmt::format("{}", points.size()));
     double balance = 0;
     for (const ForcedPoint& point : points) balance = std::max(balance, point.balance);
-    for (const ForcedKind kind : {ForcedKind::contact_free, ForcedKind::periodic, ForcedKind::nearly_periodic,
-                                  ForcedKind::quasi_periodic, ForcedKind::chaotic, ForcedKind::transient}) {
+    for (const ForcedKind kind : forced_kinds) {
         const auto count = std::count_if(points.begin(), points.end(),
                                          [kind](const ForcedPoint& point) { return point.kind == kind; });
         row(fmt::format("  {}", name(kind)), fmt::format("{}", count));

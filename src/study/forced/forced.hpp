@@ -20,6 +20,8 @@ enum class ForcedKind {
     chaotic,          ///< does not return; neighbouring motions part
     transient         ///< energy still grows or falls
 };
+inline constexpr std::array forced_kinds{ForcedKind::contact_free,   ForcedKind::periodic, ForcedKind::nearly_periodic,
+                                         ForcedKind::quasi_periodic, ForcedKind::chaotic,  ForcedKind::transient};
 [[nodiscard]] std::string_view name(ForcedKind kind);  ///< "contact-free", "periodic", ...
 
 /// One frequency of a sweep. Energies in the energy unit of the bar, per period of the force unless said otherwise.

@@ -264,6 +264,10 @@ std::vector<ForcedPoint> forced_response(const Scene& scene, const std::vector<F
             strands.back().push_back(point);
         }
     }
+    std::array<std::vector<const ForcedPoint*>, 2> done_before;  // of sweeps down, up
+    for (auto& sweep : done_before) sweep.resize(forcing.frequencies.size());
+    for (const ForcedPoint& point : known)
+        done_before.at(point.up ? 1 : 0).at(static_cast<std::size_t>(point.place)) = &point;
     std::mutex mutex;
     std::size_t next = 0;
     std::exception_ptr failure;  // the first that a thread met
@@ -283,13 +287,11 @@ std::vector<ForcedPoint> forced_response(const Scene& scene, const std::vector<F
                         const std::lock_guard lock(mutex);
                         if (failure) return;
                     }
-                    const auto old = std::find_if(known.begin(), known.end(), [&](const ForcedPoint& one) {
-                        return one.up == point.up && one.place == point.place;
-                    });
-                    point = old != known.end() ? *old : Point(scene, point.place, point.up).run(state, phase);
+                    const ForcedPoint* old = done_before.at(point.up ? 1 : 0).at(static_cast<std::size_t>(point.place));
+                    point = old != nullptr ? *old : Point(scene, point.place, point.up).run(state, phase);
                     state = state_of_waves(scene.bar, point.waves);
                     phase = point.phase;
-                    if (old != known.end()) continue;
+                    if (old != nullptr) continue;
                     const std::lock_guard lock(mutex);
                     done(point);
                 }
